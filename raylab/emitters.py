@@ -1,0 +1,141 @@
+"""From described lights to the rows that `raylab.lights` reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from raylab import description as d
+from raylab import lights, quadrics
+from raylab.errors import SceneError
+from raylab.geometry import Placement
+from raylab.point import triangle_frame
+from raylab.record import Table
+from raylab.vec3 import Vec3
+from raylab.view import View
+
+Array = npt.NDArray[np.float64]
+_SHAPES = {
+    lights.TRIANGLE: ("triangle", lights.TriangleShape()),
+    lights.RECTANGLE: ("rectangle", lights.RectangleShape()),
+    lights.DISK: ("disk", lights.DiskShape()),
+    lights.SPHERE: ("sphere", lights.SphereShape()),
+    lights.CYLINDER: ("cylinder", lights.CylinderShape()),
+}
+
+
+def colour(value: Any, what: str) -> Array:
+    """`value` as a linear RGB triple; SceneError unless it is finite and not negative."""
+    rgb = np.broadcast_to(np.asarray(value, np.float64), 3)
+    if not np.all(np.isfinite(rgb)) or rgb.min() < 0.0:
+        raise SceneError(f"{what} must be finite and not negative, got {rgb.tolist()}")
+    return rgb
+
+
+class AreaLights:
+    """Collects the area lights of a scene, shape by shape."""
+
+    def __init__(self) -> None:
+        self.rows: list[Array] = []
+        self.corners: list[Array] = []
+        self.shares: list[Array] = []
+
+    def add_mesh(self, shape: d.Shape, kind: str, vertices: Array, faces: npt.NDArray[np.uint32]) -> int:
+        """A mesh light over normalised float32 vertices; returns its number."""
+        corners = vertices[faces].astype(np.float64)
+        if kind == "rectangle" and len(faces) == 2:
+            v0, v1, v3 = vertices[[0, 1, 3]] if not _reversed(faces) else vertices[[0, 3, 1]]
+            return self._add_flat(shape, lights.RECTANGLE, np.array([v0, v1, v3], np.float64), 1.0)
+        if len(faces) == 1:
+            return self._add_flat(shape, lights.TRIANGLE, corners[0], 0.5)
+        areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        if not areas.sum() > 0.0:
+            raise SceneError(f"shape {shape.name!r}: an area light needs at least one triangle")
+        shares = np.cumsum(areas) / areas.sum()
+        shares[-1] = 1.0
+        first = sum(len(s) for s in self.shares)
+        self.corners.append(corners.reshape(-1, 3))
+        self.shares.append(shares)
+        return self._add(shape, lights.MESH, area=float(areas.sum()), first=first, count=len(faces))
+
+    def add_quadric(self, shape: d.Shape, row: Array) -> int:
+        """A sphere, disk or cylinder light from its normalised quadric row; returns its number."""
+        p, to_world, side = row[1:4], np.linalg.inv(row[4:13].reshape(3, 3)), row[13]
+        a, b, c = to_world.T
+        if row[0] == quadrics.DISK:
+            n = np.cross(a, b)
+            area = np.pi * float(np.linalg.norm(n))
+            return self._add(shape, lights.DISK, p=p, e1=a, e2=b, n=n * side / np.linalg.norm(n), area=area)
+        radius = float(np.linalg.norm(a))
+        scaled = to_world.T @ to_world / radius**2
+        round_axes = 3 if row[0] == quadrics.SPHERE else 2
+        if np.abs(scaled[:round_axes, :] - np.diag(np.diag(scaled))[:round_axes, :]).max() > 1e-9 or abs(scaled[1, 1] - 1) > 1e-9:
+            raise SceneError(f"shape {shape.name!r}: an area light on a sphere or cylinder must not be stretched or sheared")
+        if row[0] == quadrics.SPHERE:
+            if abs(scaled[2, 2] - 1) > 1e-9:
+                raise SceneError(f"shape {shape.name!r}: an area light on a sphere must not be stretched")
+            area = 4 * np.pi * radius**2
+            return self._add(shape, lights.SPHERE, p=p, e1=[radius, 0, 0], e2=[side, 0, 0], area=area)
+        area = 2 * np.pi * radius * float(np.linalg.norm(c))
+        return self._add(shape, lights.CYLINDER, p=p, e1=a, e2=b, n=c, tilt=[side, 0, 0], area=area)
+
+    def _add_flat(self, shape: d.Shape, kind: int, corners: Array, share: float) -> int:
+        n, slack, tilt = triangle_frame(*(Vec3(*v) for v in corners))
+        e1, e2 = corners[1] - corners[0], corners[2] - corners[0]
+        area = share * float(np.linalg.norm(np.cross(e1, e2)))
+        return self._add(shape, kind, p=corners[0], e1=e1, e2=e2, n=tuple(n), area=area, slack=slack, tilt=tuple(tilt))
+
+    def _add(self, shape, kind, p=(0, 0, 0), e1=(0, 0, 0), e2=(0, 0, 0), n=(0, 0, 0), area=0.0, slack=0.0, tilt=(0, 0, 0), first=0, count=0):  # fmt: skip
+        radiance = colour(shape.radiance, f"shape {shape.name!r}: radiance")
+        self.rows.append(np.concatenate([[kind], radiance, p, e1, e2, n, [area, slack], tilt, [first, count]]))
+        return len(self.rows) - 1
+
+    def table(self) -> Table:
+        """`scene.lights`, compiled for the kinds that occur."""
+        if not self.rows:
+            return Table(lights.NoLight, np.zeros((0, lights.ROW)))
+        rows = np.stack(self.rows)
+        present = dict(_SHAPES[kind] for kind in sorted({int(k) for k in rows[:, 0]} - {lights.MESH}))
+        if self.shares:
+            present["mesh"] = lights.MeshShape(View(np.concatenate(self.corners)), View(np.concatenate(self.shares)))
+        return Table(lights.AreaLight, rows, lights.Shapes(**present))
+
+    def kinds(self) -> set[str]:
+        return {lights.KINDS[int(row[0])] for row in self.rows}
+
+
+def _reversed(faces: npt.NDArray[np.uint32]) -> bool:
+    return bool(faces[0, 0] != 0)
+
+
+def point_table(described: Sequence[d.Light], placement: Placement) -> Table:
+    """`scene.points`: intensity in normalised units (W/sr scale with length squared) and position."""
+    found = [light for light in described if isinstance(light, d.PointLight)]
+    if not found:
+        return Table(lights.NoLight, np.zeros((0, 6)))
+    rows = []
+    for light in found:
+        position = np.asarray(light.position, np.float64)
+        if position.shape != (3,) or not np.all(np.isfinite(position)):
+            raise SceneError(f"point light: position must be three finite numbers, got {position.tolist()}")
+        intensity = colour(light.intensity, "point light: intensity") * placement.scale**2
+        rows.append(np.concatenate([intensity, placement.points(position)]))
+    return Table(lights.PointLight, np.stack(rows))
+
+
+def sun_table(described: Sequence[d.Light]) -> Table:
+    """`scene.suns`: irradiance and the unit direction to the light."""
+    found = [light for light in described if isinstance(light, d.DirectionalLight)]
+    if not found:
+        return Table(lights.NoLight, np.zeros((0, 6)))
+    rows = []
+    for light in found:
+        towards = np.asarray(light.direction, np.float64)
+        size = np.linalg.norm(towards)
+        if towards.shape != (3,) or not (np.isfinite(size) and size > 0.0):
+            raise SceneError(f"directional light: direction must be a finite vector, not zero, got {towards.tolist()}")
+        rows.append(np.concatenate([colour(light.irradiance, "directional light: irradiance"), -towards / size]))
+    return Table(lights.DirectionalLight, np.stack(rows))

@@ -1,0 +1,197 @@
+"""From described shapes to arrays: world transforms, the normalised placement, meshes and quadrics for Embree."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from raylab import description as d
+from raylab import quadrics
+from raylab.errors import SceneError
+
+Array = npt.NDArray[np.float64]
+
+_SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+_SQUARE_UV = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+_SQUARE_FACES = np.array([[0, 1, 2], [0, 2, 3]])
+_CHUNK = 1 << 17  # triangles checked at a time, to bound the memory
+
+
+@dataclass
+class MeshArrays:
+    """A mesh in world coordinates, its degenerate triangles removed."""
+
+    shape: d.Shape
+    vertices: Array
+    faces: npt.NDArray[np.uint32]
+    normals: Array | None
+    uv: Array | None
+    kind: str = "mesh"
+
+
+@dataclass
+class QuadricArrays:
+    """A quadric in world coordinates: `to_world` maps the unit sphere, disk or cylinder to it."""
+
+    shape: d.Shape
+    kind: int
+    to_world: Array
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Normalised coordinates: (x - centre) * scale, scale a power of two."""
+
+    centre: Array
+    scale: float
+
+    def points(self, x: npt.ArrayLike) -> Array:
+        return (np.asarray(x, np.float64) - self.centre) * self.scale
+
+    @classmethod
+    def around(cls, boxes: Sequence[tuple[Array, Array]]) -> Placement:
+        """The placement that brings all the (lower, upper) boxes into [-1, 1]."""
+        if not boxes:
+            return cls(np.zeros(3), 1.0)
+        lower, upper = np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
+        centre = lower + (upper - lower) / 2
+        extent = float(np.max(np.maximum(upper - centre, centre - lower)))
+        if extent == 0.0:
+            return cls(centre, 1.0)
+        _, exponent = math.frexp(extent)  # extent = m * 2^exponent with 1/2 <= m < 1
+        return cls(centre, 2.0**-exponent)
+
+
+def gather(shapes: Sequence[d.Shape]) -> tuple[list[MeshArrays], list[QuadricArrays], list[str]]:
+    """World-space meshes and quadrics of all shapes, and warnings about what had to be left out."""
+    meshes: list[MeshArrays] = []
+    quads: list[QuadricArrays] = []
+    warnings: list[str] = []
+    for shape in shapes:
+        check_matrix(shape)
+        if isinstance(shape, d.Sphere | d.Disk | d.Cylinder):
+            quads.append(quadric(shape))
+        else:
+            meshes.append(world_mesh(shape, warnings))
+    return meshes, quads, warnings
+
+
+def check_matrix(shape: d.Shape) -> None:
+    """Raise SceneError unless `to_world` is a finite, invertible affine (4, 4) matrix."""
+    m = np.asarray(shape.to_world)
+    if m.shape != (4, 4) or not np.all(np.isfinite(m)) or not np.array_equal(m[3], [0, 0, 0, 1]):
+        raise SceneError(f"shape {shape.name!r}: to_world must be a finite affine (4, 4) matrix, got\n{m}")
+    if np.linalg.cond(m[:3, :3]) > 1e12:
+        raise SceneError(f"shape {shape.name!r}: to_world squeezes the shape flat (its matrix is singular)")
+
+
+def quadric(shape: d.Sphere | d.Disk | d.Cylinder) -> QuadricArrays:
+    """The affine map from the unit quadric to the shape."""
+    if isinstance(shape, d.Disk):
+        return QuadricArrays(shape, quadrics.DISK, shape.to_world)
+    if not (shape.radius > 0.0 and math.isfinite(shape.radius)):
+        raise SceneError(f"shape {shape.name!r}: radius must be positive and finite, got {shape.radius}")
+    local = np.eye(4)
+    if isinstance(shape, d.Sphere):
+        local[:3, :3] *= shape.radius
+        local[:3, 3] = shape.center
+        return QuadricArrays(shape, quadrics.SPHERE, shape.to_world @ local)
+    axis = np.asarray(shape.p1, float) - shape.p0
+    height = np.linalg.norm(axis)
+    if not (height > 0.0 and np.isfinite(height)):
+        raise SceneError(f"shape {shape.name!r}: p0 and p1 must be two different finite points, got {shape.p0}, {shape.p1}")
+    _, _, basis = np.linalg.svd(axis[None, :])
+    across = basis[1:] * shape.radius
+    if np.dot(np.cross(across[0], across[1]), axis) < 0.0:
+        across = across[::-1]
+    local[:3, :3] = np.stack([across[0], across[1], axis], axis=1)
+    local[:3, 3] = shape.p0
+    return QuadricArrays(shape, quadrics.CYLINDER, shape.to_world @ local)
+
+
+def quadric_box(q: QuadricArrays) -> tuple[Array, Array]:
+    """The world-space bounding box (lower, upper)."""
+    m, centre = q.to_world[:3, :3], q.to_world[:3, 3]
+    if q.kind == quadrics.SPHERE:
+        reach = np.linalg.norm(m, axis=1)
+        return centre - reach, centre + reach
+    reach, top = np.linalg.norm(m[:, :2], axis=1), centre + (m[:, 2] if q.kind == quadrics.CYLINDER else 0.0)
+    return np.minimum(centre, top) - reach, np.maximum(centre, top) + reach
+
+
+def quadric_row(q: QuadricArrays, placement: Placement) -> Array:
+    """The row of `raylab.quadrics.Quadric` in normalised coordinates."""
+    to_local = np.linalg.inv(q.to_world[:3, :3]) / placement.scale
+    side = -1.0 if q.shape.flip_normals else 1.0
+    return np.concatenate([[q.kind], placement.points(q.to_world[:3, 3]), to_local.ravel(), [side]])
+
+
+def world_mesh(shape: d.Shape, warnings: list[str]) -> MeshArrays:
+    """A mesh, rectangle or cube in world coordinates."""
+    vertices, faces, normals, uv, kind = local_mesh(shape)
+    m = shape.to_world
+    world = vertices @ m[:3, :3].T + m[:3, 3]
+    if not np.all(np.isfinite(world)):
+        bad = int(np.flatnonzero(~np.isfinite(world).all(axis=1))[0])
+        raise SceneError(f"shape {shape.name!r}: vertex {bad} is not finite: {world[bad]}")
+    if normals is not None:
+        normals = normals @ np.linalg.inv(m[:3, :3])
+        size = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = np.divide(normals, size, out=np.zeros_like(normals), where=size > 0)
+    inside_out = np.linalg.det(m[:3, :3]) < 0.0 and not isinstance(shape, d.Mesh)
+    if shape.flip_normals != inside_out:
+        faces = faces[:, ::-1]
+    if shape.flip_normals and normals is not None:
+        normals = -normals
+    keep = usable(world, faces)
+    if not keep.all():
+        warnings.append(f"shape {shape.name!r}: {int((~keep).sum())} degenerate triangles of {len(faces)} left out")
+        faces = faces[keep]
+    return MeshArrays(shape, world, np.ascontiguousarray(faces, np.uint32), normals, uv, kind)
+
+
+def local_mesh(shape: d.Shape) -> tuple[Array, npt.NDArray[Any], Array | None, Array | None, str]:
+    """Vertices, faces, normals, uv and kind in local coordinates."""
+    if isinstance(shape, d.Rectangle):
+        return _SQUARE, _SQUARE_FACES, None, _SQUARE_UV, "rectangle"
+    if isinstance(shape, d.Cube):
+        return cube()
+    if not isinstance(shape, d.Mesh):
+        raise SceneError(f"shape {shape.name!r}: expected a shape of raylab.description, got {type(shape).__name__}")
+    vertices, faces = np.asarray(shape.vertices, np.float64), np.asarray(shape.faces)
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3:
+        raise SceneError(f"shape {shape.name!r}: expected vertices (n, 3) and faces (m, 3), got {vertices.shape} and {faces.shape}")
+    if len(faces) and not (0 <= faces.min() and faces.max() < len(vertices)):
+        raise SceneError(f"shape {shape.name!r}: faces refer to vertices {faces.min()} to {faces.max()}, there are {len(vertices)}")
+    for name, data, columns in (("normals", shape.normals, 3), ("uv", shape.uv, 2)):
+        if data is not None and (np.shape(data) != (len(vertices), columns) or not np.all(np.isfinite(data))):
+            raise SceneError(f"shape {shape.name!r}: {name} must be finite, ({len(vertices)}, {columns}), got {np.shape(data)}")
+    return vertices, faces, shape.normals, shape.uv, "mesh"
+
+
+def cube() -> tuple[Array, npt.NDArray[Any], None, Array, str]:
+    """Six squares around the cube [-1, 1]^3, normals outwards, each with the whole (u, v) square."""
+    sides = []
+    for axis in range(3):
+        for sign in (1.0, -1.0):
+            side = np.roll(_SQUARE + [0.0, 0.0, 1.0], axis + 1, axis=1)
+            sides.append(sign * side)
+    faces = np.concatenate([_SQUARE_FACES + 4 * k if k % 2 == 0 else _SQUARE_FACES[:, ::-1] + 4 * k for k in range(6)])
+    return np.concatenate(sides), faces, None, np.tile(_SQUARE_UV, (6, 1)), "cube"
+
+
+def usable(vertices: Array, faces: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
+    """Which triangles have an area: 2 A > 2^-20 (longest edge)^2. Below, Embree's own normal is noise."""
+    keep = np.empty(len(faces), bool)
+    for start in range(0, len(faces), _CHUNK):
+        v = vertices[faces[start : start + _CHUNK]]
+        e = v - np.roll(v, 1, axis=1)
+        longest = np.einsum("nij,nij->ni", e, e).max(axis=1)
+        n = np.cross(e[:, 1], e[:, 2])
+        keep[start : start + _CHUNK] = np.sqrt(np.einsum("ni,ni->n", n, n)) > 2.0**-20 * longest
+    return keep

@@ -1,0 +1,80 @@
+"""Image: what a render returns: mean radiance and its standard error, pixel by pixel, and how it was made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from raylab.pixels import COUNT, INVALID, MEAN, SQUARES
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """A rendered picture.
+
+    Attributes
+    ----------
+    mean, standard_error : (h, w, 3) float64, linear sRGB radiance; the error is NaN where it is unknown.
+    samples : (h, w) samples in each pixel, invalid ones not counted.
+    invalid_samples : how many samples were not finite and left out; each may hide a bias.
+    invalid_rays : how many rays were not traced because they were not finite; they let no light through.
+    """
+
+    mean: Array
+    standard_error: Array
+    samples: Array
+    invalid_samples: int = 0
+    invalid_rays: int = 0
+    complete: bool = True
+    report: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def image_mean(self) -> Array:
+        """(3,): the mean over all pixels."""
+        return np.asarray(np.nanmean(self.mean, axis=(0, 1)))
+
+    @property
+    def image_standard_error(self) -> Array:
+        """(3,): of `image_mean`; pixels are independent, so their variances add."""
+        variance = self.standard_error**2
+        return np.asarray(np.sqrt(variance.sum(axis=(0, 1))) / variance[..., 0].size)
+
+    @property
+    def relative_error(self) -> float:
+        """Root mean square of the standard errors of all pixels over the mean radiance; NaN while unknown."""
+        mean = float(np.nanmean(self.mean))
+        noise = float(np.sqrt(np.mean(self.standard_error**2)))
+        return noise / mean if mean > 0.0 else (0.0 if noise == 0.0 else float("nan"))
+
+
+def estimate(accumulator: Array, independent: bool) -> tuple[Array, Array, Array]:
+    """Mean (h, w, 3), standard error (h, w, 3) and samples (h, w) from (streams, h, w, COLUMNS).
+
+    Independent samples: SE^2 = sum (v - mean)^2 / (n (n - 1)). Otherwise samples of one stream depend on each other,
+    and the streams are compared: SE^2 = sum (m_r - mean)^2 / (R (R - 1)), over R streams.
+    """
+    counts = accumulator[..., COUNT]
+    samples = counts.sum(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        weights = counts / samples
+        means = accumulator[..., MEAN : MEAN + 3]
+        mean = np.where(weights[..., None] > 0.0, means * weights[..., None], 0.0).sum(axis=0)
+        mean[samples == 0] = np.nan
+        if independent:
+            squares = accumulator[..., SQUARES : SQUARES + 3].sum(axis=0)
+            variance = squares / (samples * (samples - 1.0))[..., None]
+        else:
+            streams = (counts > 0).sum(axis=0)[..., None]
+            spread = np.where(counts[..., None] > 0, (means - mean) ** 2, 0.0).sum(axis=0)
+            variance = spread / (streams * (streams - 1.0))
+    known = samples[..., None] > 1 if independent else streams > 1
+    return mean, np.where(known, np.sqrt(variance), np.nan), samples
+
+
+def invalid(accumulator: Array) -> int:
+    return int(accumulator[..., INVALID].sum())

@@ -1,0 +1,256 @@
+"""render(scene, shade): passes over the picture, bands of rows over threads, until enough samples are taken.
+
+The samples of each stream are taken in passes 1, 2, 4, 8, ..., so that an Owen-scrambled sequence is complete after
+each pass, the error is known early, and Ctrl-C always leaves a whole picture. What a pixel gets depends on seed,
+pixel, stream and sample number alone; threads and bands change nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from typing import Any
+
+import numba
+import numpy as np
+
+from raylab import samplers
+from raylab.errors import UserError
+from raylab.image import Image, estimate, invalid
+from raylab.pixels import COUNT, accumulate, cached_accumulate, fresh_accumulate, new_accumulator, view
+from raylab.scene import Scene
+from raylab.strategies import strategy
+from raylab.surface import INVALID_RAYS, SHADOW_RAYS, TALLIES
+from raylab.view import View
+
+STREAMS = 4  # independent scrambles of a sobol or stratified picture, from which its error is estimated
+MAX_SAMPLES = 1 << 30  # of one stream: Sobol' numbers have 32 bits
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How many samples to take, checked: samples per stream, or a time, or an error."""
+
+    streams: int
+    samples: int = MAX_SAMPLES
+    seconds: float = float("inf")
+    relative_error: float = 0.0
+
+    @classmethod
+    def make(cls, sampler: str, spp: int | None, seconds: float | None, relative_error: float | None) -> Plan:
+        given = [n for n, v in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)) if v is not None]
+        if len(given) > 1:
+            raise UserError(f"expected one of spp, seconds and relative_error, got {' and '.join(given)}")
+        for name, value in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)):
+            if value is not None and not (value > 0 and value < float("inf")):
+                raise UserError(f"{name} must be positive, got {value}")
+        streams = 1 if sampler == "independent" else STREAMS
+        if spp is None:
+            return cls(streams, seconds=seconds or float("inf"), relative_error=relative_error or 0.0)
+        if spp > MAX_SAMPLES or int(spp) != spp:
+            raise UserError(f"spp must be a whole number up to {MAX_SAMPLES}, got {spp}")
+        streams = next(r for r in range(streams, 0, -1) if spp % r == 0)
+        return cls(streams, samples=int(spp) // streams)
+
+
+@dataclass
+class Progress:
+    """What a progress bar shows; `done` and `total` are samples of the whole picture, total None when unknown."""
+
+    done: int = 0
+    total: int | None = None
+    rays: int = 0
+    seconds: float = 0.0
+    relative_error: float = float("nan")
+
+
+@dataclass
+class _Run:
+    """A render under way: its picture so far, its tallies and its clocks."""
+
+    scene: Scene
+    strategy: Any
+    sampler: str
+    seed: int
+    threads: int
+    plan: Plan
+    accumulator: Any = None
+    tally: Any = field(default_factory=lambda: np.zeros(TALLIES, np.int64))
+    taken: int = 0  # samples of each stream, complete over the picture
+    compile_seconds: float = 0.0
+    render_seconds: float = 0.0
+
+
+def render(
+    scene: Scene,
+    shade: str | Callable[..., Any] = "direct",
+    *,
+    sampler: str | None = None,
+    spp: int | None = None,
+    seconds: float | None = None,
+    relative_error: float | None = None,
+    seed: int | None = None,
+    threads: int | None = None,
+    band_rows: int | None = None,
+    progress: Callable[[Progress], None] | None = None,
+) -> Image:
+    """Render `scene` with a slide's shade(), by name or as a function.
+
+    Parameters
+    ----------
+    shade : a name from `raylab.strategies.NAMES`, or shade(x, V, brdf, N, scene, rng), or shade(x, k_d, N, scene, rng).
+    sampler : "independent", "stratified" or "sobol"; the scene's own by default.
+    spp, seconds, relative_error : stop after so many samples a pixel, after a time, or at a noise level
+        (`Image.relative_error`); at most one of them, spp of the scene by default.
+    seed : picture number; the same seed gives the same bits for every number of threads.
+    threads : default: all cores. band_rows : rows of a work item, chosen by default.
+    progress : called now and then from this thread.
+
+    Returns
+    -------
+    Image; after Ctrl-C what was done so far, with `complete` False.
+
+    Raises
+    ------
+    UserError : an argument that cannot be used.
+    """
+    described = scene.description
+    name = sampler or described.sampler
+    if name not in samplers.NAMES:
+        raise UserError(f"unknown sampler {name!r}; expected one of {', '.join(samplers.NAMES)}")
+    if spp is None and seconds is None and relative_error is None:
+        spp = described.spp
+    plan = Plan.make(name, spp, seconds, relative_error)
+    threads = default_threads() if threads is None else threads
+    if threads < 1:
+        raise UserError(f"threads must be at least 1, got {threads}")
+    seed = described.seed if seed is None else seed
+    run = _Run(scene, strategy(shade, scene), name, seed, threads, plan)
+    return _execute(run, band_rows, progress or (lambda _: None))
+
+
+def default_threads() -> int:
+    """The cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _execute(run: _Run, band_rows: int | None, progress: Callable[[Progress], None]) -> Image:
+    camera = run.scene.description.camera
+    run.accumulator = new_accumulator(run.plan.streams, camera.width, camera.height)
+    start = time.perf_counter()
+    _compile(run)
+    run.compile_seconds = time.perf_counter() - start
+    complete = True
+    try:
+        with ThreadPoolExecutor(run.threads) as pool:
+            for first, last in _passes(run):
+                _one_pass(run, pool, first, last, band_rows, progress)
+    except KeyboardInterrupt:
+        complete = False
+    return _image(run, complete)
+
+
+def _kernel(run: _Run) -> Any:
+    if numba.config.DISABLE_JIT:
+        return accumulate
+    return cached_accumulate if run.strategy.cached else fresh_accumulate
+
+
+def _arguments(run: _Run, tally: Any, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[Any, ...]:
+    camera = run.scene.description.camera
+    cells = run.plan.samples if run.plan.samples < MAX_SAMPLES else 16
+    sampler = samplers.make(run.sampler, run.seed, cells)
+    data = run.scene.data._replace(tally=View(tally))
+    pixels = view(run.accumulator)
+    return data, run.scene.camera, run.strategy, sampler, pixels, camera.width, camera.height, rows, samples
+
+
+def _compile(run: _Run) -> None:
+    """Compile (or load from the cache) by rendering nothing."""
+    if not numba.config.DISABLE_JIT:
+        _kernel(run)(*_arguments(run, np.zeros(TALLIES, np.int64), (0, 0), (0, 0)))
+
+
+def _passes(run: _Run) -> Iterator[tuple[int, int]]:
+    """Ranges of samples 0 .. 1, 1 .. 2, 2 .. 4, ..., the last one cut to what the plan allows."""
+    while run.taken < run.plan.samples:
+        last = min(max(1, 2 * run.taken), run.plan.samples)
+        if run.taken > 0 and run.plan.seconds < float("inf"):
+            rate = run.taken / run.render_seconds
+            affordable = int((run.plan.seconds - run.render_seconds) * rate)
+            if affordable < 1:
+                return
+            last = min(last, run.taken + affordable)
+        yield run.taken, last
+        run.taken = last
+        if run.plan.relative_error > 0.0 and _so_far(run).relative_error <= run.plan.relative_error:
+            return
+
+
+def _so_far(run: _Run) -> Image:
+    mean, error, counts = estimate(run.accumulator, run.sampler == "independent")
+    return Image(mean, error, counts)
+
+
+def _one_pass(
+    run: _Run,
+    pool: ThreadPoolExecutor,
+    first: int,
+    last: int,
+    band_rows: int | None,
+    progress: Callable[[Progress], None],
+) -> None:
+    """Render samples first .. last - 1 of each stream, a band of rows to each work item."""
+    camera = run.scene.description.camera
+    start, base = time.perf_counter(), run.render_seconds
+    shown = Progress(total=None if run.plan.samples == MAX_SAMPLES else run.plan.samples * run.plan.streams)
+    shown.relative_error = _so_far(run).relative_error if first > 1 else float("nan")
+    per_row = camera.width * run.plan.streams * (last - first)
+    rows = band_rows or max(1, min(-(-camera.height // (4 * run.threads)), 200_000 // per_row))
+    waiting: set[Future[Any]] = set()
+    finished_rows = 0
+    try:
+        for top in range(0, camera.height, rows):
+            bottom = min(top + rows, camera.height)
+            waiting.add(pool.submit(_band, run, (top, bottom), (first, last)))
+        while waiting:
+            done, waiting = wait(waiting, timeout=0.1, return_when=FIRST_COMPLETED)
+            for future in done:
+                count, tally = future.result()
+                finished_rows += count
+                run.tally += tally
+            run.render_seconds = base + time.perf_counter() - start
+            share = finished_rows / camera.height
+            shown.done = int((first + (last - first) * share) * run.plan.streams)
+            pixels = camera.width * camera.height
+            shown.rays, shown.seconds = shown.done * pixels + int(run.tally[SHADOW_RAYS]), run.render_seconds
+            progress(shown)
+    except BaseException:
+        for future in waiting:
+            future.cancel()
+        wait(waiting)
+        run.render_seconds = base + time.perf_counter() - start
+        raise
+
+
+def _band(run: _Run, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[int, Any]:
+    tally = np.zeros(TALLIES, np.int64)
+    _kernel(run)(*_arguments(run, tally, rows, samples))
+    return rows[1] - rows[0], tally
+
+
+def _image(run: _Run, complete: bool) -> Image:
+    mean, error, counts = estimate(run.accumulator, run.sampler == "independent")
+    taken = int(run.accumulator[..., COUNT].sum()) + invalid(run.accumulator)
+    report = {
+        "sampler": run.sampler,
+        "seed": run.seed,
+        "threads": run.threads,
+        "streams": run.plan.streams,
+        "seconds": {"compile": run.compile_seconds, "render": run.render_seconds},
+        "rays": {"camera": taken, "shadow": int(run.tally[SHADOW_RAYS])},
+    }
+    return Image(mean, error, counts, invalid(run.accumulator), int(run.tally[INVALID_RAYS]), complete, report)

@@ -1,0 +1,222 @@
+"""Maps from the unit square: "start with uniform in square" (slide "Creating soft shadows").
+
+Three functions for each target, in this order: `sample_X(..., u)` maps u = (u1, u2) to X, `pdf_X` is its density
+(1/sr for directions, 1/area for points), `invert_X` finds the u that `sample_X` maps to a given point. Directions
+have unit length; N and the other axes must have it too.
+"""
+
+from __future__ import annotations
+
+import math
+
+from raylab.jit import njit
+from raylab.vec3 import Vec3, cross, dot, length
+
+PI = math.pi
+
+
+@njit
+def frame(n):
+    """Two unit vectors s, t with s x t = n. Source: Duff et al. 2017, JCGT 6(1), listing 3."""
+    sign = math.copysign(1.0, n.z)
+    a = -1.0 / (sign + n.z)
+    b = n.x * n.y * a
+    return Vec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3(b, sign + n.y * n.y * a, -n.y)
+
+
+@njit
+def from_frame(n, x, y, z):
+    """x s + y t + z n, with s, t = frame(n)."""
+    s, t = frame(n)
+    return s * x + t * y + n * z
+
+
+@njit
+def turn(y, x):
+    """The angle of (x, y) as a fraction of a full turn in [0, 1)."""
+    fraction = math.atan2(y, x) / (2.0 * PI)
+    if fraction < 0.0:
+        fraction += 1.0
+    return fraction if fraction < 1.0 else 0.0
+
+
+@njit
+def lift(n, z, sin_theta, u2):
+    """The direction at height z = cos(theta) over n, at the fraction u2 of a turn around it."""
+    phi = 2.0 * PI * u2
+    return from_frame(n, sin_theta * math.cos(phi), sin_theta * math.sin(phi), z)
+
+
+@njit
+def drop(n, w):
+    """The fraction of a turn at which w stands around n: what `lift` calls u2."""
+    s, t = frame(n)
+    return turn(dot(w, t), dot(w, s))
+
+
+# --- hemisphere, uniform: slide "Diffuse surface in env. by Monte Carlo" ---
+
+
+@njit
+def sample_hemisphere(N, u):
+    """A direction uniform over the hemisphere around N: z = u1."""
+    z = u[0]
+    return lift(N, z, math.sqrt((1.0 - z) * (1.0 + z)), u[1])
+
+
+@njit
+def pdf_hemisphere(N, w):
+    """p(w) = 1 / (2 pi), 1/sr, above the horizon."""
+    return 0.5 / PI if dot(w, N) > 0.0 else 0.0
+
+
+@njit
+def invert_hemisphere(N, w):
+    return max(0.0, dot(w, N)), drop(N, w)
+
+
+# --- hemisphere, proportional to the cosine: the same slide ---
+
+
+@njit
+def sample_cos_hemisphere(N, u):
+    """A direction with density proportional to cos(theta) around N: z = sqrt(1 - u1)."""
+    return lift(N, math.sqrt(1.0 - u[0]), math.sqrt(u[0]), u[1])
+
+
+@njit
+def pdf_cos_hemisphere(N, w):
+    """p(w) = cos(theta) / pi, 1/sr."""
+    return max(0.0, dot(w, N)) / PI
+
+
+@njit
+def invert_cos_hemisphere(N, w):
+    sine = cross(N, w)
+    return dot(sine, sine), drop(N, w)
+
+
+# --- sphere, uniform ---
+
+
+@njit
+def sample_sphere(u):
+    """A direction uniform over the sphere: z = 1 - 2 u1."""
+    r = 2.0 * math.sqrt(u[0] * (1.0 - u[0]))
+    phi = 2.0 * PI * u[1]
+    return Vec3(r * math.cos(phi), r * math.sin(phi), 1.0 - 2.0 * u[0])
+
+
+@njit
+def pdf_sphere(w):
+    """p(w) = 1 / (4 pi), 1/sr."""
+    return 0.25 / PI
+
+
+@njit
+def invert_sphere(w):
+    return (1.0 - w.z) / 2.0, turn(w.y, w.x)
+
+
+# --- disk ---
+
+
+@njit
+def sample_disk(u):
+    """A point (x, y) uniform over the unit disk: r = sqrt(u1)."""
+    r, phi = math.sqrt(u[0]), 2.0 * PI * u[1]
+    return r * math.cos(phi), r * math.sin(phi)
+
+
+@njit
+def pdf_disk(x, y):
+    """p = 1 / pi inside, 1/area."""
+    return 1.0 / PI if x * x + y * y <= 1.0 else 0.0
+
+
+@njit
+def invert_disk(x, y):
+    return x * x + y * y, turn(y, x)
+
+
+# --- triangle ---
+
+
+@njit
+def sample_triangle(u):
+    """Barycentric coordinates (b1, b2) uniform over a triangle: b0 = 1 - sqrt(u1), b2 = u2 sqrt(u1)."""
+    root = math.sqrt(u[0])
+    return root * (1.0 - u[1]), root * u[1]
+
+
+@njit
+def pdf_triangle(b1, b2):
+    """p = 2 inside, for (b1, b2) in the unit right triangle; 1/A over a triangle of area A."""
+    return 2.0 if min(b1, b2) >= 0.0 and b1 + b2 <= 1.0 else 0.0
+
+
+@njit
+def invert_triangle(b1, b2):
+    root = b1 + b2
+    return root * root, b2 / root if root > 0.0 else 0.0
+
+
+# --- cone: the directions towards a sphere ---
+
+
+@njit
+def one_minus_cos(sin_max):
+    """1 - cos of the angle in [0, pi/2] with the given sine, without cancellation."""
+    return sin_max * sin_max / (1.0 + math.sqrt((1.0 - sin_max) * (1.0 + sin_max)))
+
+
+@njit
+def sample_cone(axis, sin_max, u):
+    """A direction uniform over the cone around `axis` whose half angle has the sine `sin_max`."""
+    x = u[0] * one_minus_cos(sin_max)
+    return lift(axis, 1.0 - x, math.sqrt(x * (2.0 - x)), u[1])
+
+
+@njit
+def pdf_cone(axis, sin_max, w):
+    """p(w) = 1 / (2 pi (1 - cos theta_max)), 1/sr; 0 outside."""
+    sine = cross(axis, w)
+    if dot(axis, w) <= 0.0 or dot(sine, sine) > sin_max * sin_max * (1.0 + 1e-12):
+        return 0.0
+    return 0.5 / (PI * one_minus_cos(sin_max))
+
+
+@njit
+def invert_cone(axis, sin_max, w):
+    return one_minus_cos(length(cross(axis, w))) / one_minus_cos(sin_max), drop(axis, w)
+
+
+# --- Phong lobe: slide "Creating glossy reflections" ---
+
+
+@njit
+def sample_phong_lobe(R, n, u):
+    """A direction with density proportional to cos(alpha)^n around R: cos(alpha) = (1 - u1)^(1 / (n + 1))."""
+    x = -math.expm1(math.log1p(-u[0]) / (n + 1.0))
+    return lift(R, 1.0 - x, math.sqrt(x * (2.0 - x)), u[1])
+
+
+@njit
+def pdf_phong_lobe(R, n, w):
+    """p(w) = (n + 1) / (2 pi) cos(alpha)^n, 1/sr."""
+    return (n + 1.0) / (2.0 * PI) * cos_power(R, n, w)
+
+
+@njit
+def invert_phong_lobe(R, n, w):
+    sine = cross(R, w)
+    return -math.expm1((n + 1.0) * 0.5 * math.log1p(-min(1.0, dot(sine, sine)))), drop(R, w)
+
+
+@njit
+def cos_power(R, n, w):
+    """max(0, R . w)^n = exp(n/2 log1p(-sin^2 alpha)): exact also for n = 1e7, where pow loses all digits."""
+    if dot(R, w) <= 0.0:
+        return 0.0
+    sine = cross(R, w)
+    return math.exp(0.5 * n * math.log1p(-min(1.0, dot(sine, sine))))

@@ -1,0 +1,219 @@
+"""Scene: a description, checked once and turned into what kernels need.
+
+Kernels work in normalised coordinates: the centre of all content at the origin, and scaled by a power of two so that
+everything lies within [-1, 1]. Then the rounding of Embree's float32 does not depend on where a scene stands and in
+what unit it was drawn; scaling by a power of two changes no bit of the picture. Radiance has no length in it; the
+intensity of a point light, W/sr, is scaled with the square.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from raylab import description as d
+from raylab import quadrics
+from raylab.camera import Pinhole, make_filter
+from raylab.embree import EmbreeScene
+from raylab.emitters import AreaLights, colour, point_table, sun_table
+from raylab.errors import SceneError
+from raylab.geometry import MeshArrays, Placement, QuadricArrays, gather, quadric_box, quadric_row
+from raylab.palette import Palette
+from raylab.record import Table
+from raylab.sky import make_environment
+from raylab.surface import (
+    SHAPE_COLUMNS,
+    TALLIES,
+    Coordinates,
+    Emission,
+    FlatNormals,
+    NoCoordinates,
+    NoEmission,
+    NoQuadrics,
+    Quadrics,
+    SceneData,
+    SmoothNormals,
+)
+from raylab.vec3 import Vec3
+from raylab.view import View
+
+
+class Scene:
+    """A scene ready to be rendered.
+
+    Attributes: `description`, `data` (what kernels read, normalised), `camera`, `placement`, `warnings`, `features`
+    (the names of the optional parts that this scene has; kernels are compiled without the others).
+    """
+
+    def __init__(self, description: d.SceneDescription) -> None:
+        self.description = description
+        meshes, quads, left_out = gather(description.shapes)
+        self.warnings = [*description.warnings, *left_out]
+        boxes = [(m.vertices.min(axis=0), m.vertices.max(axis=0)) for m in meshes if len(m.faces)]
+        self.placement = Placement.around(boxes + [quadric_box(q) for q in quads])
+        self.triangles = sum(len(m.faces) for m in meshes)
+        builder = _Builder(self.placement, meshes, quads)
+        self.embree = builder.embree
+        self.data = builder.data(description)
+        self.camera = pinhole(description.camera, self.placement)
+        self.features = features(self, builder)
+
+    def __repr__(self) -> str:
+        return f"<Scene {self.description.name!r}: {len(self.description.shapes)} shapes, {self.triangles} triangles>"
+
+
+class _Builder:
+    """Fills the arrays of a SceneData and the Embree scene."""
+
+    def __init__(self, placement: Placement, meshes: list[MeshArrays], quads: list[QuadricArrays]) -> None:
+        self.placement, self.meshes, self.quads = placement, meshes, quads
+        self.palette, self.area_lights, self.embree = Palette(), AreaLights(), EmbreeScene()
+        self.vertices = self._vertices()
+        self.faces = np.concatenate([m.faces for m in meshes]) if meshes else np.zeros((1, 3), np.uint32)
+        self.rows = np.stack([quadric_row(q, placement) for q in quads]) if quads else np.zeros((0, 14))
+        self.shapes = self._shapes()
+        self._build_embree()
+
+    def _vertices(self) -> npt.NDArray[np.float32]:
+        """All normalised vertices, and one more row: Embree reads 16 bytes at each vertex of 12."""
+        total = sum(len(m.vertices) for m in self.meshes)
+        vertices, start = np.zeros((total + 1, 3), np.float32), 0
+        for m in self.meshes:
+            vertices[start : start + len(m.vertices)] = self.placement.points(m.vertices)
+            start += len(m.vertices)
+        return vertices
+
+    def _shapes(self) -> npt.NDArray[np.int64]:
+        table, first_face, first_vertex = [], 0, 0
+        for m in self.meshes:
+            own = self.vertices[first_vertex : first_vertex + len(m.vertices)]
+            light = -1 if m.shape.radiance is None else self.area_lights.add_mesh(m.shape, m.kind, own, m.faces)
+            smooth, has_uv = int(m.normals is not None), int(m.uv is not None)
+            table.append([first_face, first_vertex, *self._sides(m.shape), light, smooth, has_uv])
+            first_face, first_vertex = first_face + len(m.faces), first_vertex + len(m.vertices)
+        for q, row in zip(self.quads, self.rows, strict=True):
+            light = -1 if q.shape.radiance is None else self.area_lights.add_quadric(q.shape, row)
+            table.append([0, 0, *self._sides(q.shape), light, 0, 1])
+        return np.array(table, np.int64).reshape(-1, SHAPE_COLUMNS)
+
+    def _sides(self, shape: d.Shape) -> tuple[int, int]:
+        return self.palette.number(shape.front), self.palette.number(shape.back)
+
+    def _build_embree(self) -> None:
+        first_face, first_vertex = 0, 0
+        for m in self.meshes:
+            own = self.vertices[first_vertex : first_vertex + len(m.vertices)]
+            self.embree.add_mesh(own, self.faces[first_face : first_face + len(m.faces)])
+            first_face, first_vertex = first_face + len(m.faces), first_vertex + len(m.vertices)
+        if self.quads:
+            boxes = np.array([np.concatenate(quadric_box(q)).reshape(2, 3) for q in self.quads])
+            self.embree.add_quadrics(self.rows, self.placement.points(boxes).reshape(-1, 6))
+        self.embree.commit()
+
+    def data(self, description: d.SceneDescription) -> SceneData:
+        return SceneData(
+            embree=np.uint64(self.embree.handle),
+            shapes=View(self.shapes if len(self.shapes) else np.zeros((1, SHAPE_COLUMNS), np.int64)),
+            vertices=View(self.vertices),
+            faces=View(self.faces),
+            quadrics=Quadrics(Table(quadrics.Quadric, self.rows), len(self.meshes)) if self.quads else NoQuadrics(),
+            normals=self._normals(),
+            coordinates=self._coordinates(),
+            materials=self.palette.materials(),
+            emission=self._emission(),
+            lights=self.area_lights.table(),
+            points=point_table(description.lights, self.placement),
+            suns=sun_table(description.lights),
+            environment=make_environment(description.environment),
+            tally=View(np.zeros(TALLIES, np.int64)),
+        )
+
+    def _normals(self) -> Any:
+        if all(m.normals is None for m in self.meshes):
+            return FlatNormals()
+        parts = [np.zeros((len(m.vertices), 3)) if m.normals is None else m.normals for m in self.meshes]
+        return SmoothNormals(View(np.concatenate(parts).astype(np.float32)))
+
+    def _coordinates(self) -> Any:
+        if not self.palette.textured:
+            return NoCoordinates()
+        parts = [np.zeros((len(m.vertices), 2)) if m.uv is None else m.uv for m in self.meshes]
+        return Coordinates(View(np.concatenate([*parts, np.zeros((1, 2))]).astype(np.float32)))
+
+    def _emission(self) -> Any:
+        shapes = [m.shape for m in self.meshes] + [q.shape for q in self.quads]
+        if all(shape.radiance is None for shape in shapes):
+            return NoEmission()
+        black = np.zeros(3)
+        return Emission(View(np.stack([black if s.radiance is None else colour(s.radiance, s.name) for s in shapes])))
+
+
+def pinhole(camera: d.Camera, placement: Placement) -> Pinhole:
+    """The camera record in normalised coordinates; SceneError for a camera that sees nothing."""
+    check_camera(camera)
+    matrix = np.asarray(camera.to_world, np.float64)
+    tan_x, tan_y = half_extents(camera)
+    offset_x, offset_y = camera.principal_point_offset
+    left, up, forward = (matrix[:3, k] / np.linalg.norm(matrix[:3, k]) for k in range(3))
+    corner = forward + left * tan_x * (1.0 + 2.0 * offset_x) + up * tan_y * (1.0 + 2.0 * offset_y)
+    across, down = left * (-2.0 * tan_x / camera.width), up * (-2.0 * tan_y / camera.height)
+    origin = placement.points(matrix[:3, 3])
+    return Pinhole(
+        *(Vec3(*v) for v in (origin, corner, across, down)),
+        near=camera.near_clip * placement.scale,
+        far=camera.far_clip * placement.scale,
+        skip=max(0.0, float(np.linalg.norm(origin)) - 2.0),
+        filter=make_filter(camera.filter),
+    )
+
+
+def check_camera(camera: d.Camera) -> None:
+    if camera.width < 1 or camera.height < 1:
+        raise SceneError(f"camera: the film must have at least one pixel, got {camera.width} x {camera.height}")
+    if not 0.0 < camera.fov < 180.0:
+        raise SceneError(f"camera: fov must be between 0 and 180 degrees, got {camera.fov}")
+    if not 0.0 <= camera.near_clip < camera.far_clip:
+        raise SceneError(f"camera: expected 0 <= near_clip < far_clip, got {camera.near_clip}, {camera.far_clip}")
+    matrix = np.asarray(camera.to_world)
+    if matrix.shape != (4, 4) or not np.all(np.isfinite(matrix)) or abs(np.linalg.det(matrix[:3, :3])) < 1e-12:
+        raise SceneError(f"camera: to_world must be a finite, invertible (4, 4) matrix, got\n{matrix}")
+    if not (camera.filter.radius > 0.0 and camera.filter.stddev > 0.0):
+        raise SceneError(f"camera: the pixel filter needs a positive radius, got {camera.filter}")
+
+
+def half_extents(camera: d.Camera) -> tuple[float, float]:
+    """Tangents of half the field of view, across and down."""
+    tangent, aspect = math.tan(math.radians(camera.fov) / 2.0), camera.width / camera.height
+    axis = camera.fov_axis
+    if axis == "diagonal":
+        return tangent * aspect / math.hypot(aspect, 1.0), tangent / math.hypot(aspect, 1.0)
+    if axis == "smaller":
+        axis = "y" if aspect > 1.0 else "x"
+    elif axis == "larger":
+        axis = "x" if aspect > 1.0 else "y"
+    return (tangent, tangent / aspect) if axis == "x" else (tangent * aspect, tangent)
+
+
+FEATURES = (
+    "area lights", "point lights", "directional lights", "environment", "glossy BRDF", "textures",
+    "smooth normals", "spheres, disks and cylinders", "lens", "motion",
+)  # fmt: skip
+
+
+def features(scene: Scene, builder: _Builder) -> frozenset[str]:
+    """Which of FEATURES the kernel of this scene contains."""
+    data = scene.data
+    present = {
+        "area lights": len(data.lights) > 0,
+        "point lights": len(data.points) > 0,
+        "directional lights": len(data.suns) > 0,
+        "environment": data.environment.present(),
+        "glossy BRDF": data.materials.glossy(),
+        "textures": builder.palette.textured,
+        "smooth normals": data.normals.present(),
+        "spheres, disks and cylinders": bool(builder.quads),
+    }
+    return frozenset(name for name, there in present.items() if there)

@@ -1,0 +1,220 @@
+"""Where a ray meets the scene: Embree names the primitive, position and normals are recomputed in float64."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from raylab.embree import trace
+from raylab.jit import njit
+from raylab.point import Point, curved_point, facet_point, free_point, triangle_frame
+from raylab.record import record
+from raylab.vec3 import Vec3, black, cross, dot, is_finite, length, vec3_at
+from raylab.view import View
+
+# Columns of SceneData.shapes.
+FIRST_FACE, FIRST_VERTEX, FRONT, BACK, LIGHT, SMOOTH, HAS_UV, SHAPE_COLUMNS = range(8)
+# What SceneData.tally counts, per thread.
+SHADOW_RAYS, INVALID_RAYS, TALLIES = range(3)
+
+
+@record
+class SceneData(NamedTuple):
+    """A scene as kernels see it, in normalised coordinates: all content within [-1, 1]."""
+
+    embree: np.uint64
+    shapes: View  # (n, SHAPE_COLUMNS) int64: meshes first, then quadrics
+    vertices: View  # (n, 3) float32
+    faces: View  # (n, 3) uint32, numbered within their mesh
+    quadrics: Any  # Quadrics or NoQuadrics
+    normals: Any  # SmoothNormals or FlatNormals
+    coordinates: Any  # Coordinates or NoCoordinates
+    materials: Any  # DiffuseMaterials or PhongMaterials
+    emission: Any  # Emission or NoEmission
+    lights: Any  # Table of AreaLight or NoLight
+    points: Any  # Table of PointLight or NoLight
+    suns: Any  # Table of DirectionalLight or NoLight
+    environment: Any
+    tally: View  # (TALLIES,) int64
+
+
+@record
+class Hit(NamedTuple):
+    """The point x, the shading normal N on the side the ray came from, which side that is, and where on the shape."""
+
+    found: bool
+    x: Point
+    N: Vec3
+    front: bool
+    shape: int
+    uv: tuple[float, float]
+
+
+@njit
+def round32(v):
+    """v rounded to float32, as Embree sees it."""
+    return Vec3(np.float32(v.x), np.float32(v.y), np.float32(v.z))
+
+
+@njit
+def is_valid_ray(o, d):
+    """Embree takes a thousand times longer over a ray with a NaN, and silently misses with others."""
+    return is_finite(o) and is_finite(d) and dot(d, d) > 0.0
+
+
+@njit
+def no_hit():
+    return Hit(False, free_point(black), black, False, -1, (0.0, 0.0))
+
+
+@njit
+def intersect(scene, o, d, tnear, tfar):
+    """The first hit of the ray o + t d, tnear <= t <= tfar; o and d hold float32 values. Invalid rays are counted."""
+    if not is_valid_ray(o, d):
+        scene.tally[INVALID_RAYS] += 1
+        return no_hit()
+    geometry, primitive = trace(scene.embree, o, d, tnear, tfar)
+    if geometry < 0:
+        return no_hit()
+    if scene.quadrics.has(geometry):
+        return scene.quadrics.hit(geometry, primitive, o, d, tnear, tfar)
+    return triangle_hit(scene, geometry, primitive, o, d)
+
+
+@njit
+def triangle_hit(scene, shape, primitive, o, d):
+    """Plane intersection t = n . (v0 - o) / n . d in float64, and what the vertices carry there."""
+    face, first = scene.shapes[shape, FIRST_FACE] + primitive, scene.shapes[shape, FIRST_VERTEX]
+    i0, i1, i2 = first + scene.faces[face, 0], first + scene.faces[face, 1], first + scene.faces[face, 2]
+    v0, v1, v2 = vec3_at(scene.vertices, i0), vec3_at(scene.vertices, i1), vec3_at(scene.vertices, i2)
+    n, slack, tilt = triangle_frame(v0, v1, v2)
+    p = o + d * (dot(n, v0 - o) / dot(n, d))
+    N, uv = n, (0.0, 0.0)
+    if scene.normals.present() or scene.coordinates.present():
+        b = barycentrics(v0, v1, v2, p)
+        if scene.shapes[shape, SMOOTH] != 0:
+            N = scene.normals.at(i0, i1, i2, b, n)
+        uv = scene.coordinates.at(i0, i1, i2, b, scene.shapes[shape, HAS_UV])
+    front = dot(N, d) < 0.0
+    N = N if front else -N
+    n = n if dot(n, N) >= 0.0 else -n
+    return Hit(True, facet_point(p, n, slack, tilt), N, front, shape, uv)
+
+
+@njit
+def barycentrics(v0, v1, v2, p):
+    """(b0, b1, b2) of p in the triangle, as ratios of areas."""
+    n = cross(v1 - v0, v2 - v0)
+    nn = dot(n, n)
+    b1, b2 = dot(cross(p - v0, v2 - v0), n) / nn, dot(cross(v1 - v0, p - v0), n) / nn
+    return Vec3(1.0 - b1 - b2, b1, b2)
+
+
+# --- quadrics ---
+
+
+@record
+class NoQuadrics(NamedTuple):
+    tag: int = 0
+
+    def has(self, geometry):
+        return False
+
+    def hit(self, geometry, primitive, o, d, tnear, tfar):
+        return no_hit()
+
+
+@record
+class Quadrics(NamedTuple):
+    """All quadrics, one Embree geometry, number `geometry`; shape numbers follow those of the meshes."""
+
+    table: Any
+    geometry: int
+
+    def has(self, geometry):
+        return geometry == self.geometry
+
+    def hit(self, geometry, primitive, o, d, tnear, tfar):
+        quadric = self.table[primitive]
+        t = quadric.distance(o, d, tnear, tfar)
+        p = quadric.snap(o + d * t)
+        n = quadric.normal(p)
+        front = dot(n, d) < 0.0
+        n = n if front else -n
+        return Hit(True, curved_point(p, n), n, front, self.geometry + primitive, quadric.surface_uv(p))
+
+
+# --- what vertices carry ---
+
+
+@record
+class FlatNormals(NamedTuple):
+    tag: int = 0
+
+    def present(self):
+        return False
+
+    def at(self, i0, i1, i2, b, n):
+        return n
+
+
+@record
+class SmoothNormals(NamedTuple):
+    """Vertex normals (n, 3) float32, interpolated; where they cancel, the normal of the facet stands in."""
+
+    normals: View
+
+    def present(self):
+        return True
+
+    def at(self, i0, i1, i2, b, n):
+        N = vec3_at(self.normals, i0) * b.x + vec3_at(self.normals, i1) * b.y + vec3_at(self.normals, i2) * b.z
+        size = length(N)
+        return N / size if size > 0.0 else n
+
+
+@record
+class NoCoordinates(NamedTuple):
+    tag: int = 0
+
+    def present(self):
+        return False
+
+    def at(self, i0, i1, i2, b, has_uv):
+        return 0.0, 0.0
+
+
+@record
+class Coordinates(NamedTuple):
+    """Texture coordinates (n, 2) float32 of the vertices; a mesh without any gives barycentric ones, as Mitsuba."""
+
+    uv: View
+
+    def present(self):
+        return True
+
+    def at(self, i0, i1, i2, b, has_uv):
+        if has_uv == 0:
+            return b.y, b.z
+        u = self.uv[i0, 0] * b.x + self.uv[i1, 0] * b.y + self.uv[i2, 0] * b.z
+        v = self.uv[i0, 1] * b.x + self.uv[i1, 1] * b.y + self.uv[i2, 1] * b.z
+        return u, v
+
+
+@record
+class NoEmission(NamedTuple):
+    tag: int = 0
+
+    def of_shape(self, shape):
+        return black
+
+
+@record
+class Emission(NamedTuple):
+    """Radiance (n, 3) that each shape emits on its front."""
+
+    radiance: View
+
+    def of_shape(self, shape):
+        return vec3_at(self.radiance, shape)
