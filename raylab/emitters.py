@@ -12,9 +12,8 @@ from raylab import description as d
 from raylab import lights, quadrics
 from raylab.errors import SceneError
 from raylab.geometry import Placement
-from raylab.point import triangle_frame
+from raylab.point import triangle_frame_array
 from raylab.record import Table
-from raylab.vec3 import Vec3
 from raylab.view import View
 
 Array = npt.NDArray[np.float64]
@@ -83,10 +82,10 @@ class AreaLights:
         return self._add(shape, lights.CYLINDER, p=p, e1=a, e2=b, n=c, tilt=[side, 0, 0], area=area)
 
     def _add_flat(self, shape: d.Shape, kind: int, corners: Array, share: float) -> int:
-        n, slack, tilt = triangle_frame(*(Vec3(*v) for v in corners))
+        n, slack, tilt = triangle_frame_array(corners)
         e1, e2 = corners[1] - corners[0], corners[2] - corners[0]
         area = share * float(np.linalg.norm(np.cross(e1, e2)))
-        return self._add(shape, kind, p=corners[0], e1=e1, e2=e2, n=tuple(n), area=area, slack=slack, tilt=tuple(tilt))
+        return self._add(shape, kind, p=corners[0], e1=e1, e2=e2, n=n, area=area, slack=slack, tilt=tilt)
 
     def _add(self, shape, kind, p=(0, 0, 0), e1=(0, 0, 0), e2=(0, 0, 0), n=(0, 0, 0), area=0.0, slack=0.0, tilt=(0, 0, 0), first=0, count=0):  # fmt: skip
         radiance = colour(shape.radiance, f"shape {shape.name!r}: radiance")

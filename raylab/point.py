@@ -13,6 +13,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from raylab.jit import njit
 from raylab.record import record
 from raylab.vec3 import Vec3, absolute, black, cross, dot, length
@@ -72,8 +75,7 @@ def free_point(p):
 @njit
 def triangle_frame(v0, v1, v2):
     """Unit normal and `facet_terms` of a triangle."""
-    e1, e2 = v1 - v0, v2 - v0
-    n = cross(e1, e2)
+    n = cross(v1 - v0, v2 - v0)
     twice_area = length(n)
     n = n / twice_area
     extents = Vec3(
@@ -83,3 +85,13 @@ def triangle_frame(v0, v1, v2):
     )
     slack, tilt = facet_terms(n, extents, twice_area)
     return n, slack, tilt
+
+
+def triangle_frame_array(corners: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], float, npt.NDArray[np.float64]]:
+    """`triangle_frame` of corners (3, 3) for the loader, which should not have to wait for a compiler."""
+    n = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    twice_area = np.linalg.norm(n)
+    n, extents = n / twice_area, np.ptp(corners, axis=0)
+    c = np.roll(extents, -1) * np.roll(extents, -2) * (2.0 / twice_area)
+    slack = np.abs(n) @ extents + c @ extents + np.linalg.norm(extents)
+    return n, float(slack) * ULPS, (2.0 * np.abs(n) + c) * ULPS

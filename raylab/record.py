@@ -7,9 +7,10 @@ look-up is a constant, and nothing of textures is in the machine code.
 
 from __future__ import annotations
 
+import functools
 import inspect
 import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any, TypeVar
 
 import numpy as np
@@ -17,13 +18,13 @@ import numpy.typing as npt
 from numba import types
 from numba.core import cgutils
 from numba.core.imputils import RefType, impl_ret_borrowed, iternext_impl
+from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
 from numba.extending import (
     NativeValue,
     lower_builtin,
     make_attribute_wrapper,
     models,
     overload,
-    overload_method,
     register_model,
     typeof_impl,
     unbox,
@@ -34,48 +35,73 @@ from raylab.view import View, ViewType
 
 T = TypeVar("T")
 _ROWS = ViewType(types.float64, 2)
-_compiled: dict[Callable[..., Any], Any] = {}
-_methods: set[str] = set()
-_fields: set[str] = set()
 
 
 def record(cls: type[T]) -> type[T]:
-    """Let the methods of the NamedTuple class `cls` be called inside compiled code.
-
-    numba looks up methods by name for all NamedTuples, so a method must not share its name with a field of a record.
-    """
-    members = {name for name, member in vars(cls).items() if inspect.isfunction(member) and name[0] != "_"}
-    _fields.update(cls._fields)  # type: ignore[attr-defined]
-    for name in members - _methods:
-        _overload_record_method(name)
-    _methods.update(members)
-    if _fields & _methods:
-        raise TypeError(f"record {cls.__name__}: both a field and a method: {sorted(_fields & _methods)}")
+    """Let the methods of the NamedTuple class `cls`, and its operator -, be used inside compiled code."""
+    for name, member in list(vars(cls).items()):
+        if inspect.isfunction(member) and (name[0] != "_" or name == "__sub__"):
+            _compiled_methods[cls, name] = njit(member)
     return cls
 
 
-def _jitted(function: Callable[..., Any]) -> Any:
-    if function not in _compiled:
-        _compiled[function] = njit(function)
-    return _compiled[function]
+_compiled_methods: dict[tuple[type, str], Any] = {}
 
 
-def _method_of(numba_type: Any, name: str) -> Any:
-    method = getattr(getattr(numba_type, "instance_class", None), name, None)
-    return _jitted(method) if method is not None else None
+def _dispatcher(numba_type: Any, name: str) -> types.Dispatcher | None:
+    method = _compiled_methods.get((getattr(numba_type, "instance_class", None), name))  # type: ignore[arg-type]
+    return None if method is None else types.Dispatcher(method.inner)
 
 
-def _overload_record_method(name: str) -> None:
-    @overload_method(types.BaseNamedTuple, name, jit_options=OPTIONS)
-    def _(self, *arguments):
-        method = _method_of(self, name)
-        return None if method is None else lambda self, *arguments: method(self, *arguments)
+@infer_getattr
+class _RecordMethods(AttributeTemplate):
+    """record.name is a method of the record's class, if it has one of that name."""
+
+    key = types.BaseNamedTuple
+
+    def generic_resolve(self, record_type: Any, name: str) -> types.Type | None:
+        if _dispatcher(record_type, name) is None:
+            return None
+        return types.BoundFunction(_method_template(name), record_type)
 
 
-@overload(operator.sub, jit_options=OPTIONS)
-def _overload_sub(a, b):
-    method = _method_of(a, "__sub__") if isinstance(a, types.BaseNamedTuple) else None
-    return None if method is None else lambda a, b: method(a, b)
+@functools.cache
+def _method_template(name: str) -> type:
+    """The typing template of all record methods called `name`, and their lowering: a call of the class's function."""
+
+    class MethodTemplate(AbstractTemplate):
+        key = ("record method", name)
+
+        def generic(self, arguments, keywords):
+            dispatcher = _dispatcher(self.this, name)
+            full = dispatcher.get_call_type(self.context, (self.this, *arguments), keywords)
+            return None if full is None else signature(full.return_type, *full.args[1:], recvr=self.this)
+
+    @lower_builtin(MethodTemplate.key, types.BaseNamedTuple, types.VarArg(types.Any))
+    def lower(context, builder, method_signature, arguments):
+        return _call(context, builder, _dispatcher(method_signature.args[0], name), method_signature, arguments)
+
+    return MethodTemplate
+
+
+def _call(context, builder, dispatcher, call_signature, arguments):
+    plain = signature(call_signature.return_type, *call_signature.args)
+    dispatcher.get_call_type(context.typing_context, plain.args, {})
+    function = context.get_function(dispatcher, plain)
+    context.add_linking_libs(getattr(function, "libs", ()))
+    return function(builder, arguments)
+
+
+@infer_global(operator.sub)
+class _RecordSub(AbstractTemplate):
+    def generic(self, arguments, keywords):
+        dispatcher = _dispatcher(arguments[0], "__sub__")
+        return None if dispatcher is None else dispatcher.get_call_type(self.context, arguments, keywords)
+
+
+@lower_builtin(operator.sub, types.BaseNamedTuple, types.Any)
+def _lower_sub(context, builder, sub_signature, arguments):
+    return _call(context, builder, _dispatcher(sub_signature.args[0], "__sub__"), sub_signature, arguments)
 
 
 class Table:
@@ -96,6 +122,11 @@ class Table:
 
     def __iter__(self) -> Iterator[Any]:
         return (self[i] for i in range(len(self)))
+
+
+@functools.cache
+def _row_reader(cls: Any) -> Any:
+    return njit(cls.of)
 
 
 class TableType(types.IterableType):
@@ -156,24 +187,24 @@ def _overload_len(table):
 @overload(operator.getitem, jit_options=OPTIONS)
 def _overload_getitem(table, i):
     if isinstance(table, TableType):
-        of = _jitted(table.cls.of)
+        of = _row_reader(table.cls)
         return lambda table, i: of(table.rows, i, table.store)
 
 
 @lower_builtin("getiter", TableType)
-def _getiter(context, builder, signature, arguments):
-    iterator = cgutils.create_struct_proxy(signature.return_type)(context, builder)
+def _getiter(context, builder, iter_signature, arguments):
+    iterator = cgutils.create_struct_proxy(iter_signature.return_type)(context, builder)
     iterator.next = cgutils.alloca_once_value(builder, context.get_constant(types.intp, 0))
     iterator.table = arguments[0]
-    return impl_ret_borrowed(context, builder, signature.return_type, iterator._getvalue())
+    return impl_ret_borrowed(context, builder, iter_signature.return_type, iterator._getvalue())
 
 
 @lower_builtin("iternext", TableIterator)
 @iternext_impl(RefType.NEW)
-def _iternext(context, builder, signature, arguments, result):
-    (iterator_type,) = signature.args
+def _iternext(context, builder, next_signature, arguments, result):
+    (iterator_type,) = next_signature.args
     iterator = cgutils.create_struct_proxy(iterator_type)(context, builder, value=arguments[0])
-    of, i = _jitted(iterator_type.table.cls.of), builder.load(iterator.next)
+    of, i = _row_reader(iterator_type.table.cls), builder.load(iterator.next)
 
     def size(table):
         return len(table.rows)

@@ -59,23 +59,17 @@ def read_image(path: str | Path, raw: bool = False) -> Array:
     try:
         spec = image.spec()
         first, last = _colour_channels(path, list(spec.channelnames))
-        integer = str(spec.format).startswith("uint")
-        pixels = image.read_image(0, 0, first, last, OpenImageIO.FLOAT)
+        levels = {"uint8": 255, "uint16": 65535}.get(str(spec.format))
+        pixels = image.read_image(0, 0, first, last, spec.format if levels else OpenImageIO.FLOAT)
         if pixels is None:
             raise UserError(f'cannot read the image "{path}": {_first_line(image.geterror())}')
     finally:
         image.close()
-    values = np.asarray(pixels, dtype=np.float64).reshape(spec.height, spec.width, last - first)
-    if integer and not raw:
-        values = _decode_levels(values, 255 if str(spec.format) == "uint8" else 65535)
-    return np.ascontiguousarray(np.broadcast_to(values, (spec.height, spec.width, 3)))
-
-
-def _decode_levels(values: Array, levels: int) -> Array:
-    """sRGB decoding by a table of all levels of an integer format."""
-    table = decode_srgb(np.arange(levels + 1) / levels)
-    linear: Array = table[np.rint(values * levels).astype(np.intp)]
-    return linear
+    values = np.asarray(pixels).reshape(spec.height, spec.width, last - first)
+    if levels:  # by a table of all levels of the format
+        table = np.arange(levels + 1) / levels
+        values = (table if raw else decode_srgb(table))[values]
+    return np.array(np.broadcast_to(values, (spec.height, spec.width, 3)), dtype=np.float64)
 
 
 def _colour_channels(path: str | Path, names: list[str]) -> tuple[int, int]:

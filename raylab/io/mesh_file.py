@@ -60,8 +60,9 @@ def _read_obj(data: bytes) -> dict[str, Any]:
 
     from trimesh.exchange.obj import load_obj
 
-    data = re.sub(rb"(?m)^[ \t]*(?:usemtl|mtllib|o|g|s)(?:[ \t].*)?$", b"", data)
-    if re.search(rb"(?m)^[ \t]*f[ \t].*(?:-|(?<!\d)0+(?!\d))", data):
+    data = re.sub(rb"#.*|(?m:^ +)", b"", data.replace(b"\t", b" ").replace(b"\r\n", b"\n"))
+    data = re.sub(rb"(?m)^(?:usemtl|mtllib|o|g|s)(?: .*)?$", b"", data)
+    if re.search(rb"(?m)^f .*(?:-|(?<!\d)0+(?!\d))", data):
         data = _absolute_indices(data)
     loaded = load_obj(BytesIO(data), skip_materials=True)
     if not loaded.get("geometry"):
@@ -71,7 +72,7 @@ def _read_obj(data: bytes) -> dict[str, Any]:
         ("texture coordinates", "visual", rb"\d/\d"),
         ("normals", "vertex_normals", rb"/\d*/\d"),
     ):
-        if fields.get(key) is None and re.search(rb"(?m)^[ \t]*f[ \t].*" + corner, data):
+        if fields.get(key) is None and re.search(rb"(?m)^f .*" + corner, data):
             raise SceneError(
                 f"some faces have {name} and others have none, or their indices are out of range"
             )

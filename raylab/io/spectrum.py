@@ -57,10 +57,11 @@ def tabulated(nodes: Array, values: Array) -> Array:
 def blackbody(temperature: float, first: float = FIRST, last: float = LAST) -> Array:
     """(1000,) radiance of a black body (Planck), W/(m^2 sr nm), zero outside `first` to `last` in nm."""
     from colour.colorimetry import planck_law
+    from scipy.constants import c, h, k, pi
 
     nodes = wavelengths()
     with np.errstate(over="ignore"):  # exp() of a cold body: its radiance is zero
-        radiance = 1e-9 * np.asarray(planck_law(nodes * 1e-9, temperature), dtype=np.float64)
+        radiance = 1e-9 * np.asarray(planck_law(nodes * 1e-9, temperature, 2 * pi * h * c**2, h * c / k), dtype=np.float64)
     return np.where((nodes >= first) & (nodes <= last), radiance, 0.0)
 
 

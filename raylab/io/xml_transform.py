@@ -10,6 +10,7 @@ from raylab.description import Array
 from raylab.io.xml_tag import Tag, choices
 from raylab.io.xml_values import coordinates, number, numbers
 
+RIGID = 1e-3  # how far a rotation may be from orthogonal, as in Mitsuba 3 (Transform::has_scale)
 _AXES = ("x", "y", "z", "value")
 
 
@@ -48,15 +49,20 @@ def _scale(tag: Tag) -> Array:
 
 
 def _rotate(tag: Tag) -> Array:
-    """Rodrigues: cos(a) I + (1 - cos(a)) n n^T + sin(a) [n]_x, `angle` in degrees, counterclockwise."""
+    """Rodrigues: cos(a) I + (1 - cos(a)) n n^T + sin(a) [n]_x, `angle` in degrees, counterclockwise.
+
+    Mitsuba 3 does not normalise the axis n but scales and shears with a long one: that is refused.
+    """
     tag.check_attributes(("angle",), _AXES)
-    axis = coordinates(tag, 0.0)
-    if not axis.any():
+    n = coordinates(tag, 0.0)
+    if not n.any():
         raise tag.error("the rotation axis must not be zero; give x, y or z")
-    x, y, z = _unit(axis)
+    if abs(np.linalg.norm(n) - 1) > RIGID:
+        unit = ", ".join(f"{v:.6g}" for v in _unit(n))
+        raise tag.error(f"the rotation axis must have length 1, got {np.linalg.norm(n):g}; give ({unit})")
     angle = np.radians(number(tag, tag.attributes["angle"]))
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return _affine(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
+    cross = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
+    return _affine(np.cos(angle) * np.eye(3) + (1 - np.cos(angle)) * np.outer(n, n) + np.sin(angle) * cross)
 
 
 def _lookat(tag: Tag) -> Array:
@@ -108,9 +114,9 @@ OPERATIONS: dict[str, Callable[[Tag], Array]] = {
 
 
 def is_rigid(matrix: Array) -> bool:
-    """Whether the linear part only rotates and mirrors: |A A^T - I| <= 1e-3, as in Mitsuba 3."""
+    """Whether the linear part only rotates and mirrors: |A A^T - I| <= `RIGID`."""
     linear = matrix[:3, :3]
-    return bool((np.abs(linear @ linear.T - np.eye(3)) <= 1e-3).all())
+    return bool((np.abs(linear @ linear.T - np.eye(3)) <= RIGID).all())
 
 
 def similarity_error(matrix: Array, axes: int = 3) -> float:
