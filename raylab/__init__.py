@@ -14,13 +14,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from raylab._version import __version__
 from raylab.errors import SceneError, UserError
 from raylab.image import Image
 from raylab.render import render
 from raylab.scene import Scene
 
-__version__ = "0.1.0"
-__all__ = ["Image", "Scene", "SceneError", "UserError", "load", "render", "save"]
+__all__ = ["Image", "Scene", "SceneError", "UserError", "__version__", "load", "render", "save"]
 
 
 def load(path: str | PathLike[str], parameters: Mapping[str, Any] | None = None) -> Scene:

@@ -58,7 +58,7 @@ def occlude(arguments):
 def quadric_callbacks() -> tuple[int, int, Any]:
     """Addresses of the intersect and the occluded callback, and the objects that keep them alive."""
     if numba.config.DISABLE_JIT:
-        owners = [ctypes.CFUNCTYPE(None, ctypes.c_void_p)(function) for function in (intersect, occlude)]
+        owners: list[Any] = [ctypes.CFUNCTYPE(None, ctypes.c_void_p)(function) for function in (intersect, occlude)]
         addresses = [ctypes.cast(owner, ctypes.c_void_p).value or 0 for owner in owners]
     else:
         owners = [_compile(function) for function in (intersect, occlude)]

@@ -99,5 +99,7 @@ class Pinhole(NamedTuple):
     def ray(self, column, row, rng):
         dx, dy = self.filter.sample(rng.square())
         d = self.corner + self.across * (column + 0.5 + dx) + self.down * (row + 0.5 + dy)
-        start = max(self.near, self.skip / length(d))
+        start = self.near
+        if self.skip > 0.0:
+            start = max(start, self.skip / length(d))
         return round32(self.origin + d * start), round32(d), max(TNEAR, self.far - start)

@@ -100,8 +100,9 @@ class EmbreeScene:
 
         def give_bounds(arguments: int) -> None:
             primitive = _UINT.from_address(arguments + 8).value
-            ctypes.memmove(_POINTER.from_address(arguments + 16).value, outer[primitive, :3].ctypes.data, 12)
-            ctypes.memmove(_POINTER.from_address(arguments + 16).value + 16, outer[primitive, 3:].ctypes.data, 12)
+            target = _POINTER.from_address(arguments + 16).value or 0
+            ctypes.memmove(target, outer[primitive, :3].ctypes.data, 12)
+            ctypes.memmove(target + 16, outer[primitive, 3:].ctypes.data, 12)
 
         callback = ctypes.CFUNCTYPE(None, _POINTER)(give_bounds)
         intersect, occluded, owner = quadric_callbacks()

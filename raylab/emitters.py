@@ -42,7 +42,9 @@ class AreaLights:
         self.corners: list[Array] = []
         self.shares: list[Array] = []
 
-    def add_mesh(self, shape: d.Shape, kind: str, vertices: Array, faces: npt.NDArray[np.uint32]) -> int:
+    def add_mesh(
+        self, shape: d.Shape, kind: str, vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.uint32]
+    ) -> int:
         """A mesh light over normalised float32 vertices; returns its number."""
         corners = vertices[faces].astype(np.float64)
         if kind == "rectangle" and len(faces) == 2:
@@ -58,7 +60,7 @@ class AreaLights:
         first = sum(len(s) for s in self.shares)
         self.corners.append(corners.reshape(-1, 3))
         self.shares.append(shares)
-        return self._add(shape, lights.MESH, area=float(areas.sum()), first=first, count=len(faces))
+        return self._add(shape, lights.MESH, area=float(areas.sum()), first=first, triangles=len(faces))
 
     def add_quadric(self, shape: d.Shape, row: Array) -> int:
         """A sphere, disk or cylinder light from its normalised quadric row; returns its number."""
@@ -71,8 +73,13 @@ class AreaLights:
         radius = float(np.linalg.norm(a))
         scaled = to_world.T @ to_world / radius**2
         round_axes = 3 if row[0] == quadrics.SPHERE else 2
-        if np.abs(scaled[:round_axes, :] - np.diag(np.diag(scaled))[:round_axes, :]).max() > 1e-9 or abs(scaled[1, 1] - 1) > 1e-9:
-            raise SceneError(f"shape {shape.name!r}: an area light on a sphere or cylinder must not be stretched or sheared")
+        if (
+            np.abs(scaled[:round_axes, :] - np.diag(np.diag(scaled))[:round_axes, :]).max() > 1e-9
+            or abs(scaled[1, 1] - 1) > 1e-9
+        ):
+            raise SceneError(
+                f"shape {shape.name!r}: an area light on a sphere or cylinder must not be stretched or sheared"
+            )
         if row[0] == quadrics.SPHERE:
             if abs(scaled[2, 2] - 1) > 1e-9:
                 raise SceneError(f"shape {shape.name!r}: an area light on a sphere must not be stretched")
@@ -87,9 +94,20 @@ class AreaLights:
         area = share * float(np.linalg.norm(np.cross(e1, e2)))
         return self._add(shape, kind, p=corners[0], e1=e1, e2=e2, n=n, area=area, slack=slack, tilt=tilt)
 
-    def _add(self, shape, kind, p=(0, 0, 0), e1=(0, 0, 0), e2=(0, 0, 0), n=(0, 0, 0), area=0.0, slack=0.0, tilt=(0, 0, 0), first=0, count=0):  # fmt: skip
+    def _add(
+        self,
+        shape: d.Shape,
+        kind: int,
+        area: float,
+        slack: float = 0.0,
+        first: int = 0,
+        triangles: int = 0,
+        **vectors: Any,
+    ) -> int:
+        """Append the row of a light; the vectors p, e1, e2, n and tilt are zero unless given."""
         radiance = colour(shape.radiance, f"shape {shape.name!r}: radiance")
-        self.rows.append(np.concatenate([[kind], radiance, p, e1, e2, n, [area, slack], tilt, [first, count]]))
+        p, e1, e2, n, tilt = (vectors.get(name, np.zeros(3)) for name in ("p", "e1", "e2", "n", "tilt"))
+        self.rows.append(np.concatenate([[kind], radiance, p, e1, e2, n, [area, slack], tilt, [first, triangles]]))
         return len(self.rows) - 1
 
     def table(self) -> Table:
@@ -97,7 +115,7 @@ class AreaLights:
         if not self.rows:
             return Table(lights.NoLight, np.zeros((0, lights.ROW)))
         rows = np.stack(self.rows)
-        present = dict(_SHAPES[kind] for kind in sorted({int(k) for k in rows[:, 0]} - {lights.MESH}))
+        present: dict[str, Any] = dict(_SHAPES[kind] for kind in sorted({int(k) for k in rows[:, 0]} - {lights.MESH}))
         if self.shares:
             present["mesh"] = lights.MeshShape(View(np.concatenate(self.corners)), View(np.concatenate(self.shares)))
         return Table(lights.AreaLight, rows, lights.Shapes(**present))

@@ -104,7 +104,9 @@ def quadric(shape: d.Sphere | d.Disk | d.Cylinder) -> QuadricArrays:
     axis = np.asarray(shape.p1, float) - shape.p0
     height = np.linalg.norm(axis)
     if not (height > 0.0 and np.isfinite(height)):
-        raise SceneError(f"shape {shape.name!r}: p0 and p1 must be two different finite points, got {shape.p0}, {shape.p1}")
+        raise SceneError(
+            f"shape {shape.name!r}: p0 and p1 must be two different finite points, got {shape.p0}, {shape.p1}"
+        )
     _, _, basis = np.linalg.svd(axis[None, :])
     across = basis[1:] * shape.radius
     if np.dot(np.cross(across[0], across[1]), axis) < 0.0:
@@ -165,12 +167,18 @@ def local_mesh(shape: d.Shape) -> tuple[Array, npt.NDArray[Any], Array | None, A
         raise SceneError(f"shape {shape.name!r}: expected a shape of raylab.description, got {type(shape).__name__}")
     vertices, faces = np.asarray(shape.vertices, np.float64), np.asarray(shape.faces)
     if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3:
-        raise SceneError(f"shape {shape.name!r}: expected vertices (n, 3) and faces (m, 3), got {vertices.shape} and {faces.shape}")
-    if len(faces) and not (0 <= faces.min() and faces.max() < len(vertices)):
-        raise SceneError(f"shape {shape.name!r}: faces refer to vertices {faces.min()} to {faces.max()}, there are {len(vertices)}")
+        raise SceneError(
+            f"shape {shape.name!r}: expected vertices (n, 3) and faces (m, 3), got {vertices.shape} and {faces.shape}"
+        )
+    if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
+        raise SceneError(
+            f"shape {shape.name!r}: faces refer to vertices {faces.min()} to {faces.max()}, there are {len(vertices)}"
+        )
     for name, data, columns in (("normals", shape.normals, 3), ("uv", shape.uv, 2)):
         if data is not None and (np.shape(data) != (len(vertices), columns) or not np.all(np.isfinite(data))):
-            raise SceneError(f"shape {shape.name!r}: {name} must be finite, ({len(vertices)}, {columns}), got {np.shape(data)}")
+            raise SceneError(
+                f"shape {shape.name!r}: {name} must be finite, ({len(vertices)}, {columns}), got {np.shape(data)}"
+            )
     return vertices, faces, shape.normals, shape.uv, "mesh"
 
 
@@ -179,7 +187,7 @@ def cube() -> tuple[Array, npt.NDArray[Any], None, Array, str]:
     sides = []
     for axis in range(3):
         for sign in (1.0, -1.0):
-            side = np.roll(_SQUARE + [0.0, 0.0, 1.0], axis + 1, axis=1)
+            side = np.roll(_SQUARE + np.array([0.0, 0.0, 1.0]), axis + 1, axis=1)
             sides.append(sign * side)
     faces = np.concatenate([_SQUARE_FACES + 4 * k if k % 2 == 0 else _SQUARE_FACES[:, ::-1] + 4 * k for k in range(6)])
     return np.concatenate(sides), faces, None, np.tile(_SQUARE_UV, (6, 1)), "cube"

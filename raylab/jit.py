@@ -38,7 +38,9 @@ class Compiled:
         functools.update_wrapper(self, function)
         self.py_func = function
         self._outer = numba.njit(**OPTIONS)(function)
-        self.inner = _InnerDispatcher(function, targetoptions=OPTIONS | {"nopython": True}, pipeline_class=_InnerCompiler)
+        self.inner = _InnerDispatcher(
+            function, targetoptions=OPTIONS | {"nopython": True, "forceinline": True}, pipeline_class=_InnerCompiler
+        )
 
     def __call__(self, *arguments: Any) -> Any:
         return self._outer(*arguments)
@@ -66,6 +68,19 @@ def _typeof(value: Compiled, context: Any) -> types.Type:
 def njit(function: Callable[..., Any]) -> Any:
     """Compile `function` when it is needed; with NUMBA_DISABLE_JIT=1 it stays plain Python."""
     return function if config.DISABLE_JIT else Compiled(function)
+
+
+def entry_point(dispatcher: Any, arguments: tuple[Any, ...]) -> Callable[..., Any]:
+    """The compiled function for arguments of these types, compiled or loaded now if need be.
+
+    Calling it skips numba's look at the types of the arguments, which takes half a millisecond for a scene.
+    """
+    if config.DISABLE_JIT:
+        return dispatcher
+    dispatcher = getattr(dispatcher, "_outer", dispatcher)
+    signature = tuple(numba.typeof(argument) for argument in arguments)
+    dispatcher.compile(signature)
+    return dispatcher.overloads[signature].entry_point
 
 
 def cached_njit(function: Callable[..., Any]) -> Any:

@@ -19,7 +19,7 @@ from raylab.view import View
 
 KINDS = ("triangle", "rectangle", "disk", "sphere", "cylinder", "mesh")
 TRIANGLE, RECTANGLE, DISK, SPHERE, CYLINDER, MESH = range(len(KINDS))
-ROW = 23  # columns of a light's row: kind, radiance 3, p 3, e1 3, e2 3, n 3, area, slack, tilt 3, first, count
+ROW = 23  # columns of a light's row: kind, radiance 3, p 3, e1 3, e2 3, n 3, area, slack, tilt 3, first, triangles
 
 
 @record
@@ -28,7 +28,7 @@ class AreaLight(NamedTuple):
 
     triangle, rectangle: corner p, edges e1, e2, normal n. disk: centre p, half axes e1, e2, normal n.
     sphere: centre p, radius e1.x, side e2.x (+1: outwards). cylinder: foot p, axis n, half axes e1, e2, side below.
-    mesh: triangles first .. first + count - 1 of `shapes.mesh`.
+    mesh: triangles first .. first + triangles - 1 of `shapes.mesh`.
     """
 
     kind: int
@@ -41,7 +41,7 @@ class AreaLight(NamedTuple):
     slack: float
     tilt: Vec3
     first: int
-    count: int
+    triangles: int
     shapes: Any  # the Shapes of the scene
 
     @staticmethod
@@ -87,7 +87,6 @@ class NoLight(NamedTuple):
     I: Vec3  # noqa: E741
     y: Point
     w: Vec3
-    EMPTY = True
 
     @staticmethod
     def of(rows, i, shapes):
@@ -98,6 +97,9 @@ class NoLight(NamedTuple):
 
     def pdf(self, x, y):
         return 0.0
+
+
+NoLight.EMPTY = True  # type: ignore[attr-defined]
 
 
 # --- the shapes ---
@@ -230,7 +232,7 @@ class MeshShape(NamedTuple):
         return kind == MESH
 
     def sample(self, light, x, u):
-        low, high = light.first, light.first + light.count - 1
+        low, high = light.first, light.first + light.triangles - 1
         while low < high:  # the first triangle whose cumulated share is above u1
             middle = (low + high) // 2
             if self.shares[middle] <= u[0]:
@@ -239,7 +241,11 @@ class MeshShape(NamedTuple):
                 high = middle
         below = self.shares[low - 1] if low > light.first else 0.0
         u1 = min((u[0] - below) / (self.shares[low] - below), 1.0 - 2.0**-53)
-        v0, v1, v2 = vec3_at(self.corners, 3 * low), vec3_at(self.corners, 3 * low + 1), vec3_at(self.corners, 3 * low + 2)
+        v0, v1, v2 = (
+            vec3_at(self.corners, 3 * low),
+            vec3_at(self.corners, 3 * low + 1),
+            vec3_at(self.corners, 3 * low + 2),
+        )
         b1, b2 = sample_triangle((u1, u[1]))
         n, slack, tilt = triangle_frame(v0, v1, v2)
         return facet_point(v0 + (v1 - v0) * b1 + (v2 - v0) * b2, n, slack, tilt), 1.0 / light.area

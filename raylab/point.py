@@ -5,7 +5,8 @@ bounded by the rounding of the ray, of the triangle and of Embree's test (docs/p
 
     delta = 4 * 2^-24 * (B + longest edge),   B = sum_i |n_i| (|y_i| + r_i + |y_i - x_i|) + sum_i r_i C_i / |e1 x e2|
 
-for a point y seen from x. With E the extents of the triangle, r_i <= E_i + |y_i - x_i| and C_i <= 2 E_j E_k, so
+for a point y seen from x. With E the extents of the triangle, r_i <= E_i + |y_i - x_i|, C_i <= 2 E_j E_k, and the
+longest edge is at most sum_i E_i, so
 delta <= slack + tilt . |y - x|, where `slack` and `tilt` belong to y alone.
 """
 
@@ -47,10 +48,8 @@ def dist_sqr(a, b):
 def facet_terms(n, extents, twice_area):
     """The parts of slack and tilt that are the same all over a triangle; `extents` are those of its bounding box."""
     sliver = 2.0 / twice_area
-    c = Vec3(
-        extents.y * extents.z * sliver, extents.z * extents.x * sliver, extents.x * extents.y * sliver
-    )
-    slack = dot(absolute(n), extents) + dot(c, extents) + length(extents)
+    c = Vec3(extents.y * extents.z * sliver, extents.z * extents.x * sliver, extents.x * extents.y * sliver)
+    slack = dot(absolute(n), extents) + dot(c, extents) + extents.x + extents.y + extents.z
     return slack * ULPS, (absolute(n) * 2.0 + c) * ULPS
 
 
@@ -87,11 +86,13 @@ def triangle_frame(v0, v1, v2):
     return n, slack, tilt
 
 
-def triangle_frame_array(corners: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], float, npt.NDArray[np.float64]]:
+def triangle_frame_array(
+    corners: npt.NDArray[np.float64],
+) -> tuple[npt.NDArray[np.float64], float, npt.NDArray[np.float64]]:
     """`triangle_frame` of corners (3, 3) for the loader, which should not have to wait for a compiler."""
     n = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     twice_area = np.linalg.norm(n)
     n, extents = n / twice_area, np.ptp(corners, axis=0)
     c = np.roll(extents, -1) * np.roll(extents, -2) * (2.0 / twice_area)
-    slack = np.abs(n) @ extents + c @ extents + np.linalg.norm(extents)
+    slack = np.abs(n) @ extents + c @ extents + extents.sum()
     return n, float(slack) * ULPS, (2.0 * np.abs(n) + c) * ULPS

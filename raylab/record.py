@@ -155,7 +155,9 @@ class _TableModel(models.StructModel):
 @register_model(TableIterator)
 class _TableIteratorModel(models.StructModel):
     def __init__(self, manager, numba_type):
-        super().__init__(manager, numba_type, [("next", types.EphemeralPointer(types.intp)), ("table", numba_type.table)])
+        super().__init__(
+            manager, numba_type, [("next", types.EphemeralPointer(types.intp)), ("table", numba_type.table)]
+        )
 
 
 make_attribute_wrapper(TableType, "rows", "rows")

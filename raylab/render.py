@@ -14,13 +14,13 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from typing import Any
 
-import numba
 import numpy as np
 
 from raylab import samplers
 from raylab.errors import UserError
 from raylab.image import Image, estimate, invalid
-from raylab.pixels import COUNT, accumulate, cached_accumulate, fresh_accumulate, new_accumulator, view
+from raylab.jit import entry_point
+from raylab.pixels import COUNT, cached_accumulate, fresh_accumulate, new_accumulator, view
 from raylab.scene import Scene
 from raylab.strategies import strategy
 from raylab.surface import INVALID_RAYS, SHADOW_RAYS, TALLIES
@@ -41,7 +41,9 @@ class Plan:
 
     @classmethod
     def make(cls, sampler: str, spp: int | None, seconds: float | None, relative_error: float | None) -> Plan:
-        given = [n for n, v in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)) if v is not None]
+        given = [
+            n for n, v in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)) if v is not None
+        ]
         if len(given) > 1:
             raise UserError(f"expected one of spp, seconds and relative_error, got {' and '.join(given)}")
         for name, value in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)):
@@ -78,6 +80,7 @@ class _Run:
     threads: int
     plan: Plan
     accumulator: Any = None
+    kernel: Any = None
     tally: Any = field(default_factory=lambda: np.zeros(TALLIES, np.int64))
     taken: int = 0  # samples of each stream, complete over the picture
     compile_seconds: float = 0.0
@@ -129,7 +132,11 @@ def render(
         raise UserError(f"threads must be at least 1, got {threads}")
     seed = described.seed if seed is None else seed
     run = _Run(scene, strategy(shade, scene), name, seed, threads, plan)
-    return _execute(run, band_rows, progress or (lambda _: None))
+    return _execute(run, band_rows, progress or _silent)
+
+
+def _silent(progress: Progress) -> None:
+    """No progress bar."""
 
 
 def default_threads() -> int:
@@ -153,12 +160,6 @@ def _execute(run: _Run, band_rows: int | None, progress: Callable[[Progress], No
     return _image(run, complete)
 
 
-def _kernel(run: _Run) -> Any:
-    if numba.config.DISABLE_JIT:
-        return accumulate
-    return cached_accumulate if run.strategy.cached else fresh_accumulate
-
-
 def _arguments(run: _Run, tally: Any, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[Any, ...]:
     camera = run.scene.description.camera
     cells = run.plan.samples if run.plan.samples < MAX_SAMPLES else 16
@@ -169,9 +170,9 @@ def _arguments(run: _Run, tally: Any, rows: tuple[int, int], samples: tuple[int,
 
 
 def _compile(run: _Run) -> None:
-    """Compile (or load from the cache) by rendering nothing."""
-    if not numba.config.DISABLE_JIT:
-        _kernel(run)(*_arguments(run, np.zeros(TALLIES, np.int64), (0, 0), (0, 0)))
+    """Compile the kernel of this scene and strategy, or load it from the cache."""
+    kernel = cached_accumulate if run.strategy.cached else fresh_accumulate
+    run.kernel = entry_point(kernel, _arguments(run, run.tally, (0, 0), (0, 0)))
 
 
 def _passes(run: _Run) -> Iterator[tuple[int, int]]:
@@ -207,7 +208,8 @@ def _one_pass(
     camera = run.scene.description.camera
     start, base = time.perf_counter(), run.render_seconds
     shown = Progress(total=None if run.plan.samples == MAX_SAMPLES else run.plan.samples * run.plan.streams)
-    shown.relative_error = _so_far(run).relative_error if first > 1 else float("nan")
+    if progress is not _silent and base > 1.0:
+        shown.relative_error = _so_far(run).relative_error
     per_row = camera.width * run.plan.streams * (last - first)
     rows = band_rows or max(1, min(-(-camera.height // (4 * run.threads)), 200_000 // per_row))
     waiting: set[Future[Any]] = set()
@@ -238,7 +240,7 @@ def _one_pass(
 
 def _band(run: _Run, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[int, Any]:
     tally = np.zeros(TALLIES, np.int64)
-    _kernel(run)(*_arguments(run, tally, rows, samples))
+    run.kernel(*_arguments(run, tally, rows, samples))
     return rows[1] - rows[0], tally
 
 

@@ -79,10 +79,10 @@ class Independent(NamedTuple):
 
 @record
 class StratifiedStream(NamedTuple):
-    """Point `sample` of a jittered grid of `across` x `down` cells, in another order in each pair of dimensions."""
+    """Point `place` of a jittered grid of `across` x `down` cells, in another order in each pair of dimensions."""
 
     key: int
-    index: int
+    place: int
     across: int
     down: int
     counter: Counter
@@ -91,14 +91,14 @@ class StratifiedStream(NamedTuple):
         d = self.counter.next[0]
         self.counter.next[0] = d + 1
         key, n = combine(self.key, d), self.across * self.down
-        return stratum(permute(self.index, n, key), n, combine(key, n + self.index))
+        return stratum(permute(self.place, n, key), n, combine(key, n + self.place))
 
     def square(self):
         d = self.counter.next[0]
         self.counter.next[0] = d + 2
         key, n = combine(self.key, d), self.across * self.down
-        cell = permute(self.index, n, key)
-        jitter = combine(key, n + self.index)
+        cell = permute(self.place, n, key)
+        jitter = combine(key, n + self.place)
         u = stratum(cell % self.across, self.across, jitter)
         return u, stratum(cell // self.across, self.down, mix(jitter))
 
@@ -170,10 +170,10 @@ def shuffle_index(i, seed):
 
 @record
 class SobolStream(NamedTuple):
-    """Point `sample` of a sequence scrambled by `key`; `table` holds reversed points, `columns` the generators."""
+    """Point `place` of a sequence scrambled by `key`; `table` holds reversed points, `columns` the generators."""
 
     key: int
-    index: int
+    place: int
     table: View  # (4, 2^TABLE_BITS) uint32
     columns: View  # (4, 32) uint32
 
@@ -196,8 +196,8 @@ class SobolStream(NamedTuple):
 def block_index(stream, block):
     """The sample's number in the sequence that serves the `block`-th four dimensions."""
     if block == 0:
-        return stream.index
-    return shuffle_index(stream.index, combine(stream.key, -block))
+        return stream.place
+    return shuffle_index(stream.place, combine(stream.key, -block))
 
 
 @njit

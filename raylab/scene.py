@@ -162,7 +162,10 @@ def pinhole(camera: d.Camera, placement: Placement) -> Pinhole:
     across, down = left * (-2.0 * tan_x / camera.width), up * (-2.0 * tan_y / camera.height)
     origin = placement.points(matrix[:3, 3])
     return Pinhole(
-        *(Vec3(*v) for v in (origin, corner, across, down)),
+        origin=Vec3(*origin),
+        corner=Vec3(*corner),
+        across=Vec3(*across),
+        down=Vec3(*down),
         near=camera.near_clip * placement.scale,
         far=camera.far_clip * placement.scale,
         skip=max(0.0, float(np.linalg.norm(origin)) - 2.0),

@@ -43,8 +43,9 @@ def gradient_environment(described: d.GradientEnvironment) -> env.GradientEnviro
     slope = _LUMINANCE @ gradient
     b = float(np.linalg.norm(slope))
     axis = slope / b if b > 0.0 else np.array([0.0, 0.0, 1.0])
-    rows = [Vec3(*row) for row in gradient]
-    return env.GradientEnvironment(Vec3(*radiance), *rows, max(float(_LUMINANCE @ radiance), 1e-300), b, Vec3(*axis))
+    red, green, blue = (Vec3(*row) for row in gradient)
+    a = max(float(_LUMINANCE @ radiance), 1e-300)
+    return env.GradientEnvironment(Vec3(*radiance), red, green, blue, a, b, Vec3(*axis))
 
 
 def image_environment(described: d.ImageEnvironment) -> Any:

@@ -33,6 +33,12 @@ BUILT_IN: dict[str, tuple[Any, str]] = {
 NAMES = tuple(BUILT_IN)
 
 
+class Strategy(NamedTuple):
+    """What all strategies hold; a subclass adds shade() and visible()."""
+
+    hide_emitters: bool
+
+
 def _make(name: str, function: Any, cached: bool) -> type:
     parameters = tuple(inspect.signature(getattr(function, "py_func", function)).parameters)
     if parameters == _DIFFUSE:
@@ -54,9 +60,8 @@ def _make(name: str, function: Any, cached: bool) -> type:
     def visible(self, light):
         return black if self.hide_emitters else light
 
-    cls = NamedTuple(f"Strategy_{name}", [("hide_emitters", bool)])
-    cls.__module__ = __name__
-    cls.shade, cls.visible, cls.function, cls.cached = shade, visible, staticmethod(function), cached  # type: ignore[attr-defined]
+    members = {"shade": shade, "visible": visible, "cached": cached, "__module__": __name__, "__slots__": ()}
+    cls: Any = type(f"Strategy_{name}", (Strategy,), members)
     return record(cls)
 
 

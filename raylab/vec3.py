@@ -96,7 +96,8 @@ def _rscale(a, b):
 
 
 def _shrink(a, b):
-    return Vec3(a.x / b, a.y / b, a.z / b)
+    inverse = 1.0 / b
+    return Vec3(a.x * inverse, a.y * inverse, a.z * inverse)
 
 
 def _neg(a):

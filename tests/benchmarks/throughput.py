@@ -50,7 +50,7 @@ def soft_shadow_scene(size: int = SIZE) -> Scene:
             camera=d.Camera(to_world=to_world, fov=45.0, width=size, height=size),
             shapes=(
                 d.Rectangle(to_world=floor, front=grey, back=grey),
-                d.Mesh(vertices=ball.vertices + [0, 0, 1], faces=ball.faces, front=grey, back=grey),
+                d.Mesh(vertices=ball.vertices + np.array([0, 0, 1]), faces=ball.faces, front=grey, back=grey),
                 d.Rectangle(to_world=lamp, front=None, radiance=np.full(3, 8.0)),
             ),
             sampler="independent",

@@ -1,0 +1,44 @@
+# Everything is set up by the project itself: a virtual environment in .venv with the versions of constraints.txt.
+PYTHON ?= python3.11
+BIN := .venv/bin
+STAMP := .venv/.installed
+
+.PHONY: demo test lint crosscheck bench docs clean
+.DEFAULT_GOAL := help
+
+help:  ## this list
+	@sed -n 's/^\([a-z]*\):.*## /\1: /p' Makefile
+
+$(STAMP): pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[dev]"
+	@touch $@
+
+demo: $(STAMP)  ## render the lecture's pictures and its central plot into demo/index.html (under 5 minutes)
+	$(BIN)/python -m raylab.demo
+
+test: $(STAMP) lint  ## all tests, compiled and in plain Python (under 12 minutes on two cores)
+	$(BIN)/python -m pytest -n 2 -m "not crosscheck and not certify"
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n 2 -m "not crosscheck and not certify" $(PLAIN)
+
+lint: $(STAMP)  ## ruff and mypy
+	$(BIN)/ruff check raylab tests reference_scenes
+	$(BIN)/ruff format --check raylab tests reference_scenes
+	$(BIN)/mypy
+
+crosscheck: $(STAMP)  ## compare with Mitsuba 3, pixel by pixel (installs it; needs an LLVM library, see docs/crosscheck.md)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[crosscheck]"
+	$(BIN)/python -m pytest -m crosscheck
+
+bench: $(STAMP)  ## measure the numbers of docs/performance.md on this machine
+	$(BIN)/python tests/benchmarks/all.py
+
+docs: $(STAMP)  ## the documentation as HTML pages in docs/_build
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[docs]"
+	$(BIN)/python -m sphinx -q -b html docs docs/_build
+
+clean:  ## remove what the targets above have made
+	rm -rf .venv demo docs/_build build *.egg-info .pytest_cache .mypy_cache .ruff_cache
+
+# The test files that also run without the compiler: the same source in plain Python.
+PLAIN := tests/test_twin.py

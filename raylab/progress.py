@@ -1,0 +1,93 @@
+"""The progress bar of a render: how far, how fast, how noisy."""
+
+from __future__ import annotations
+
+import sys
+from types import TracebackType
+from typing import Any
+
+from raylab.render import Progress
+
+
+class Bar:
+    """A progress bar on standard error; call it with a Progress. Hidden unless `shown` or, by default, on a terminal.
+
+    The bar is full after all samples or, when a time was asked for, after `seconds`; when an error was asked for,
+    it shows the one reached so far and `relative_error`.
+    """
+
+    def __init__(
+        self, shown: bool | None = None, seconds: float | None = None, relative_error: float | None = None
+    ) -> None:
+        self.shown = sys.stderr.isatty() if shown is None else shown
+        self.seconds, self.relative_error = seconds, relative_error
+        self.bar: Any = None
+
+    def __enter__(self) -> Bar:
+        return self
+
+    def __call__(self, progress: Progress) -> None:
+        if not self.shown:
+            return
+        if self.bar is None:
+            self.bar = self._open(progress)
+        self.bar.n = progress.done if self.seconds is None else round(min(progress.seconds, self.seconds), 1)
+        self.bar.set_postfix_str(self.text(progress), refresh=False)
+        self.bar.update(0)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.bar is not None:
+            self.bar.refresh()
+            self.bar.close()
+
+    def text(self, progress: Progress) -> str:
+        """For example "12.3 Mrays/s, error 2.1 %"."""
+        rate = progress.rays / progress.seconds / 1e6 if progress.seconds > 0.0 else 0.0
+        text = f"{rate:.1f} Mrays/s"
+        if progress.relative_error == progress.relative_error:
+            text += f", error {100.0 * progress.relative_error:.2g} %"
+            if self.relative_error is not None:
+                text += f" (until {100.0 * self.relative_error:.2g} %)"
+        return text
+
+    def _open(self, progress: Progress) -> Any:
+        from tqdm import tqdm
+
+        total: float | None = progress.total if self.seconds is None else self.seconds
+        unit = " samples" if self.seconds is None else " s"
+        form = "{l_bar}{bar}| {n:g} of {total:g}{unit} [{elapsed}<{remaining}{postfix}]"
+        if total is None:
+            form = "{n:g}{unit} [{elapsed}{postfix}]"
+        return tqdm(desc="raylab", total=total, unit=unit, bar_format=form, mininterval=0.1, dynamic_ncols=True, leave=True)
+
+
+class StepBar:
+    """A bar over the steps of a long experiment; call it with (done, total, what). Silent unless shown."""
+
+    def __init__(self, name: str, shown: bool | None = None) -> None:
+        self.name, self.shown = name, sys.stderr.isatty() if shown is None else shown
+        self.bar: Any = None
+
+    def __enter__(self) -> StepBar:
+        return self
+
+    def __call__(self, done: int, total: int, what: str) -> None:
+        if not self.shown:
+            return
+        if self.bar is None:
+            from tqdm import tqdm
+
+            form = "{l_bar}{bar}| {n} of {total} [{elapsed}<{remaining}{postfix}]"
+            self.bar = tqdm(desc=self.name, total=total, bar_format=form, dynamic_ncols=True)
+        self.bar.n, self.bar.total = done, total
+        self.bar.set_postfix_str(what, refresh=False)
+        self.bar.update(0)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.bar is not None:
+            self.bar.refresh()
+            self.bar.close()
