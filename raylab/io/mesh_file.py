@@ -17,9 +17,7 @@ Array = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.uint32]
 
 CHUNK = 1 << 16  # faces worked on at a time, so that temporary arrays stay small
-FLAT = (
-    2.0**-20
-)  # twice the area over the square of the longest edge, below which a triangle counts as degenerate
+FLAT = 2.0**-20  # twice the area over the square of the longest edge, below which a triangle counts as degenerate
 
 
 class MeshData(NamedTuple):
@@ -73,9 +71,7 @@ def _read_obj(data: bytes) -> dict[str, Any]:
         ("normals", "vertex_normals", rb"/\d*/\d"),
     ):
         if fields.get(key) is None and re.search(rb"(?m)^f .*" + corner, data):
-            raise SceneError(
-                f"some faces have {name} and others have none, or their indices are out of range"
-            )
+            raise SceneError(f"some faces have {name} and others have none, or their indices are out of range")
     return dict(fields)
 
 
@@ -116,13 +112,9 @@ def _read_ply(data: bytes) -> dict[str, Any]:
         raise SceneError("the file has no faces")
     for name, rows in (("face", fields["faces"]), ("vertex", fields["vertices"])):
         if len(rows) < elements[name]["length"]:
-            raise SceneError(
-                f"it announces {elements[name]['length']} of the element {name}, but has {len(rows)}"
-            )
+            raise SceneError(f"it announces {elements[name]['length']} of the element {name}, but has {len(rows)}")
     if "texcoord" in faces["properties"]:
-        raise SceneError(
-            "texture coordinates of face corners are not supported; store u and v with the vertices"
-        )
+        raise SceneError("texture coordinates of face corners are not supported; store u and v with the vertices")
     for name in faces["properties"]:
         table = faces["data"]
         if isinstance(table, np.ndarray) and table.dtype.names and table[name].dtype.names:
@@ -139,9 +131,7 @@ def _checked(file: Path, fields: dict[str, Any]) -> MeshData:
     vertices = np.array(fields["vertices"], dtype=np.float64)
     faces = np.asarray(fields["faces"])
     if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise SceneError(
-            f'the vertices of the mesh "{file}" need three coordinates, got {vertices.shape[-1]}'
-        )
+        raise SceneError(f'the vertices of the mesh "{file}" need three coordinates, got {vertices.shape[-1]}')
     if min(len(face) for face in faces) < 3 if faces.dtype == object else faces.shape[1] < 3:
         raise SceneError(f'a face of the mesh "{file}" has less than three corners')
     if faces.dtype == object or faces.shape[1] != 3:
@@ -201,11 +191,10 @@ def degenerate_faces(vertices: Array, faces: npt.NDArray[np.integer]) -> npt.NDA
     return np.concatenate(flags) if flags else np.zeros(0, dtype=bool)
 
 
-def _chunks(
-    vertices: Array, faces: npt.NDArray[np.integer]
-) -> Iterator[tuple[npt.NDArray[np.integer], list[Array]]]:
-    """Some of the faces, and their edges 0 to 1, 1 to 2, 2 to 0."""
+def _chunks(vertices: Array, faces: npt.NDArray[np.integer]) -> Iterator[tuple[npt.NDArray[np.integer], list[Array]]]:
+    """Some of the faces, and their edges 0 to 1, 1 to 2, 2 to 0, in units of the largest coordinate."""
+    unit = np.abs(vertices).max(initial=0.0) or 1.0  # so that no product of three coordinates overflows
     for start in range(0, len(faces), CHUNK):
         some = faces[start : start + CHUNK]
-        corners = [vertices[some[:, k]] for k in range(3)]
+        corners = [vertices[some[:, k]] / unit for k in range(3)]
         yield some, [corners[(k + 1) % 3] - corners[k] for k in range(3)]

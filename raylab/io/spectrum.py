@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -60,11 +61,14 @@ def blackbody(temperature: float, first: float = FIRST, last: float = LAST) -> A
     from scipy.constants import c, h, k, pi
 
     nodes = wavelengths()
-    with np.errstate(over="ignore"):  # exp() of a cold body: its radiance is zero
-        radiance = 1e-9 * np.asarray(planck_law(nodes * 1e-9, temperature, 2 * pi * h * c**2, h * c / k), dtype=np.float64)
+    with np.errstate(over="ignore", divide="ignore"):  # exp(inf) of cold bodies: they are black
+        radiance = 1e-9 * np.asarray(
+            planck_law(nodes * 1e-9, temperature, 2 * pi * h * c**2, h * c / k), dtype=np.float64
+        )
     return np.where((nodes >= first) & (nodes <= last), radiance, 0.0)
 
 
+@cache
 def d65() -> Array:
     """(1000,) power of the CIE standard illuminant D65 over `D65_SCALE`, linear between nodes 5 nm apart."""
     import colour
@@ -80,6 +84,7 @@ def _nodes() -> Array:
     return np.arange(FIRST, LAST + 1, 5.0)
 
 
+@cache
 def _matching_functions() -> Array:
     """(1000, 3) x, y, z bar at `wavelengths`."""
     import colour

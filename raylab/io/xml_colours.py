@@ -104,9 +104,7 @@ def _blackbody(node: Node, context: Context) -> Array:
     """Radiance in W/(m^2 sr) weighted with the colour matching functions; infrared is not part of it."""
     first = node.number("wavelength_min", spectrum.FIRST)
     last = node.number("wavelength_max", spectrum.LAST, above=first)
-    temperature = node.number(
-        "temperature", above=0, below=1e12
-    )  # hotter, and Planck's formula divides by zero
+    temperature = node.number("temperature", above=0, below=1e12)  # hotter, and Planck's formula divides by zero
     rgb = spectrum.integrate(spectrum.blackbody(temperature, first, last))
     clamped = np.maximum(rgb, 0.0)
     if not np.array_equal(rgb, clamped):

@@ -69,9 +69,7 @@ class _Parser:
 
     def tag(self, element: Any, path: Path) -> Tag:
         """`element` with `$name` replaced in its attributes."""
-        raw = Tag(
-            str(element.tag), {str(k): str(v) for k, v in element.attrib.items()}, path, element.sourceline
-        )
+        raw = Tag(str(element.tag), {str(k): str(v) for k, v in element.attrib.items()}, path, element.sourceline)
         values = {key: self.substitute(raw, text) for key, text in raw.attributes.items()}
         return Tag(raw.name, values, path, raw.line)
 
@@ -86,9 +84,7 @@ class _Parser:
                 if match[1].startswith(name):
                     self.used.add(name)
                     return self.defaults[name] + match[1][len(name) :]
-            raise tag.error(
-                f'undefined parameter "${match[1]}"; {choices(match[1], names, "known parameters:")}'
-            )
+            raise tag.error(f'undefined parameter "${match[1]}"; {choices(match[1], names, "known parameters:")}')
 
         return re.sub(r"\\\$|\$([\w-]*)", replace, text)
 
@@ -205,7 +201,7 @@ def _check_version(tag: Tag, version: str | None) -> None:
 
 def _load(path: Path) -> Any:
     """The root element of an XML file; document types and entities are refused."""
-    from lxml import etree  # type: ignore[import-untyped]
+    from lxml import etree
 
     try:
         data = path.read_bytes()

@@ -83,9 +83,7 @@ class Node:
         """A float strictly between `above` and `below`."""
         value = float(self.ask(name, ("float", "integer"), default))
         if not above < value < below:
-            limits = (
-                f"greater than {above:g}" if below == float("inf") else f"between {above:g} and {below:g}"
-            )
+            limits = f"greater than {above:g}" + (f" and less than {below:g}" if below < float("inf") else "")
             raise self.error(f'"{name}" must be {limits}, got {value:g}', name)
         return value
 
@@ -141,9 +139,7 @@ class Node:
             if name not in self.asked and parameter.kind == "object":
                 raise parameter.tag.error(f"<{parameter.value.kind}> has no place in {self.tag.label}")
             if name not in self.asked:
-                raise parameter.tag.error(
-                    f'{self.tag.label} has no parameter "{name}"; {choices(name, known)}'
-                )
+                raise parameter.tag.error(f'{self.tag.label} has no parameter "{name}"; {choices(name, known)}')
 
 
 def read_node(node: Node, readers: Mapping[str, Callable[..., T]], *arguments: Any) -> T:

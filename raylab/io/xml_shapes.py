@@ -57,11 +57,9 @@ def _sphere(node: Node, context: Context) -> Sphere:
     common = _common(node, context)
     if similarity_error(common["to_world"]) > ROUND:
         raise node.error("to_world must scale a sphere equally along all axes, without shear", "to_world")
-    if np.linalg.det(common["to_world"][:3, :3]) < 0:
+    if np.linalg.slogdet(common["to_world"][:3, :3]).sign < 0:
         common["flip_normals"] = not common["flip_normals"]
-    return Sphere(
-        center=node.point("center", np.zeros(3)), radius=node.number("radius", 1.0, above=0), **common
-    )
+    return Sphere(center=node.point("center", np.zeros(3)), radius=node.number("radius", 1.0, above=0), **common)
 
 
 def _cylinder(node: Node, context: Context) -> Cylinder:
@@ -96,7 +94,7 @@ def _mesh(node: Node, context: Context, flip_tex_coords: bool) -> Mesh:
     if node.boolean("face_normals", False):
         normals = None
     elif normals is None:
-        linear = common["to_world"][:3, :3]
+        linear = common["to_world"][:3, :3] / np.abs(common["to_world"][:3, :3]).max()
         normals = vertex_normals(vertices @ linear.T, faces) @ linear  # back to local: n = A^T n_world
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return Mesh(vertices=vertices, faces=faces, normals=normals, uv=uv, **common)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 
 import numpy as np
@@ -57,9 +58,10 @@ def _rotate(tag: Tag) -> Array:
     n = coordinates(tag, 0.0)
     if not n.any():
         raise tag.error("the rotation axis must not be zero; give x, y or z")
-    if abs(np.linalg.norm(n) - 1) > RIGID:
+    length = math.hypot(*n)
+    if abs(length - 1) > RIGID:
         unit = ", ".join(f"{v:.6g}" for v in _unit(n))
-        raise tag.error(f"the rotation axis must have length 1, got {np.linalg.norm(n):g}; give ({unit})")
+        raise tag.error(f"the rotation axis must have length 1, got {length:g}; give ({unit})")
     angle = np.radians(number(tag, tag.attributes["angle"]))
     cross = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
     return _affine(np.cos(angle) * np.eye(3) + (1 - np.cos(angle)) * np.outer(n, n) + np.sin(angle) * cross)
@@ -116,12 +118,14 @@ OPERATIONS: dict[str, Callable[[Tag], Array]] = {
 def is_rigid(matrix: Array) -> bool:
     """Whether the linear part only rotates and mirrors: |A A^T - I| <= `RIGID`."""
     linear = matrix[:3, :3]
+    if np.abs(linear).max() > 2:  # before a square can overflow
+        return False
     return bool((np.abs(linear @ linear.T - np.eye(3)) <= RIGID).all())
 
 
 def similarity_error(matrix: Array, axes: int = 3) -> float:
     """How far the first `axes` columns are from orthogonal and equally long, over that length squared."""
-    columns = matrix[:3, :3]
+    columns = matrix[:3, :3] / np.abs(matrix[:3, :3]).max()
     gram = columns.T @ columns
     square = np.trace(gram[:axes, :axes]) / axes
     expected = np.diag(np.where(np.arange(3) < axes, square, np.diag(gram)))
