@@ -13,13 +13,13 @@ import numpy.typing as npt
 from raylab import description as d
 from raylab import quadrics
 from raylab.errors import SceneError
+from raylab.triangles import degenerate_faces
 
 Array = npt.NDArray[np.float64]
 
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
 _SQUARE_UV = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 _SQUARE_FACES = np.array([[0, 1, 2], [0, 2, 3]])
-_CHUNK = 1 << 17  # triangles checked at a time, to bound the memory
 
 
 @dataclass
@@ -150,10 +150,10 @@ def world_mesh(shape: d.Shape, warnings: list[str]) -> MeshArrays:
         faces = faces[:, ::-1]
     if shape.flip_normals and normals is not None:
         normals = -normals
-    keep = usable(world, faces)
-    if not keep.all():
-        warnings.append(f"shape {shape.name!r}: {int((~keep).sum())} degenerate triangles of {len(faces)} left out")
-        faces = faces[keep]
+    thin = degenerate_faces(world, faces)
+    if thin.any():
+        warnings.append(f"shape {shape.name!r}: {int(thin.sum())} degenerate triangles of {len(faces)} left out")
+        faces = faces[~thin]
     return MeshArrays(shape, world, np.ascontiguousarray(faces, np.uint32), normals, uv, kind)
 
 
@@ -182,24 +182,20 @@ def local_mesh(shape: d.Shape) -> tuple[Array, npt.NDArray[Any], Array | None, A
     return vertices, faces, shape.normals, shape.uv, "mesh"
 
 
+# The cube's faces as Mitsuba lays (u, v) over them: axis and side of the face, then the axes of u and v, negative
+# where the coordinate falls; axes are counted from 1.
+_CUBE = ((1, 2, -3), (-1, 2, 3), (2, -1, -3), (-2, 3, 1), (3, 2, 1), (-3, -2, 1))
+
+
 def cube() -> tuple[Array, npt.NDArray[Any], None, Array, str]:
     """Six squares around the cube [-1, 1]^3, normals outwards, each with the whole (u, v) square."""
-    sides = []
-    for axis in range(3):
-        for sign in (1.0, -1.0):
-            side = np.roll(_SQUARE + np.array([0.0, 0.0, 1.0]), axis + 1, axis=1)
-            sides.append(sign * side)
-    faces = np.concatenate([_SQUARE_FACES + 4 * k if k % 2 == 0 else _SQUARE_FACES[:, ::-1] + 4 * k for k in range(6)])
-    return np.concatenate(sides), faces, None, np.tile(_SQUARE_UV, (6, 1)), "cube"
 
+    def axis(signed: int) -> Array:
+        return np.sign(signed) * np.eye(3)[abs(signed) - 1]
 
-def usable(vertices: Array, faces: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
-    """Which triangles have an area: 2 A > 2^-20 (longest edge)^2. Below, Embree's own normal is noise."""
-    keep = np.empty(len(faces), bool)
-    for start in range(0, len(faces), _CHUNK):
-        v = vertices[faces[start : start + _CHUNK]]
-        e = v - np.roll(v, 1, axis=1)
-        longest = np.einsum("nij,nij->ni", e, e).max(axis=1)
-        n = np.cross(e[:, 1], e[:, 2])
-        keep[start : start + _CHUNK] = np.sqrt(np.einsum("ni,ni->n", n, n)) > 2.0**-20 * longest
-    return keep
+    corners, faces = [], []
+    for k, (side, u, v) in enumerate(_CUBE):
+        corners.append(axis(side) + _SQUARE[:, :1] * axis(u) + _SQUARE[:, 1:2] * axis(v))
+        outwards = np.cross(axis(u), axis(v)) @ axis(side) > 0.0
+        faces.append((_SQUARE_FACES if outwards else _SQUARE_FACES[:, ::-1]) + 4 * k)
+    return np.concatenate(corners), np.concatenate(faces), None, np.tile(_SQUARE_UV, (6, 1)), "cube"

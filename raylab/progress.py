@@ -79,7 +79,7 @@ class StepBar:
         if self.bar is None:
             from tqdm import tqdm
 
-            form = "{l_bar}{bar}| {n} of {total} [{elapsed}<{remaining}{postfix}]"
+            form = "{l_bar}{bar}| [{elapsed}<{remaining}{postfix}]"
             self.bar = tqdm(desc=self.name, total=total, bar_format=form, dynamic_ncols=True)
         self.bar.n, self.bar.total = done, total
         self.bar.set_postfix_str(what, refresh=False)

@@ -11,7 +11,8 @@ import pytest
 import trimesh
 
 from raylab.errors import SceneError
-from raylab.io.mesh_file import FLAT, MeshData, degenerate_faces, read_mesh, vertex_normals
+from raylab.io.mesh_file import MeshData, read_mesh
+from raylab.triangles import FLAT, degenerate_faces, vertex_normals
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 CORNERS = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"

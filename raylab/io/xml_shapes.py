@@ -81,7 +81,8 @@ def _section_error(to_world: Array, axis: Array) -> float:
 
 def _mesh(node: Node, context: Context, flip_tex_coords: bool) -> Mesh:
     """With smooth normals unless `face_normals`: of the file, else computed in world space as Mitsuba 3."""
-    from raylab.io.mesh_file import read_mesh, vertex_normals
+    from raylab.io.mesh_file import read_mesh
+    from raylab.triangles import vertex_normals
 
     common = _common(node, context)
     path = context.file(node)

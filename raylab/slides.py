@@ -1,0 +1,91 @@
+"""The slide table: every slide of the lecture, in order, and the function that mirrors it.
+
+`docs/slides.md` is this table as a page; a test keeps the two equal and the table complete.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Slide(NamedTuple):
+    """A slide: its title (numbered where several slides share it), its functions, and what to know about them."""
+
+    title: str
+    functions: tuple[str, ...]
+    note: str = ""
+
+
+NOT_YET = "not in this version"
+
+TABLE = (
+    Slide("Advanced Ray Tracing", (), "title slide"),
+    Slide("Basic ray tracing", ("raylab.shade.point_light",), "one shadow ray for every point light"),
+    Slide("Basic ray traced image", (), "picture"),
+    Slide("Discontinuities in basic RT", ("raylab.shade.point_light",), "see reference_scenes/basic_ray_tracing"),
+    Slide("Soft shadows", (), "picture: reference_scenes/soft_shadows"),
+    Slide("Cause of soft shadows (point lights)", ("raylab.shade.point_light",)),
+    Slide("Cause of soft shadows (area lights)", ("raylab.shade.area_diffuse",)),
+    Slide("Glossy reflection", (), "picture: reference_scenes/plates"),
+    Slide("Cause of glossy reflection (smooth surfaces)", (), NOT_YET),
+    Slide("Cause of glossy reflection (rough surfaces)", ("raylab.brdf.Phong",)),
+    Slide("Depth of field", (), NOT_YET),
+    Slide("Cause of focusing effects (lenses)", (), NOT_YET),
+    Slide("Cause of focusing effects (point aperture)", ("raylab.camera.Pinhole",)),
+    Slide("Cause of focusing effects (finite aperture)", (), NOT_YET),
+    Slide("Motion blur", (), NOT_YET),
+    Slide("Cause of motion blur", (), NOT_YET),
+    Slide("Creating soft shadows", ("raylab.lights.RectangleShape", "raylab.samplers.make"), "uniform in square"),
+    Slide(
+        "Illumination as integration (Lambertian, over the light)",
+        ("raylab.shade.point_light", "raylab.shade.area_diffuse"),
+        "steps 1 and 4",
+    ),
+    Slide("Area source by Monte Carlo (integral, diffuse)", ("raylab.shade.area_diffuse",)),
+    Slide("Area source by Monte Carlo (diffuse)", ("raylab.shade.area_diffuse",)),
+    Slide(
+        "Illumination as integration (any BRDF, over the light)",
+        ("raylab.shade.point_light", "raylab.shade.area"),
+        "steps 1 and 4",
+    ),
+    Slide("Area source by Monte Carlo (integral, any BRDF)", ("raylab.shade.area",)),
+    Slide("Area source by Monte Carlo", ("raylab.shade.area",)),
+    Slide(
+        "Illumination as integration (Lambertian, over directions)",
+        ("raylab.shade.directional_light", "raylab.shade.env_uniform"),
+        "steps 1 and 4",
+    ),
+    Slide(
+        "Diffuse surface in env. by Monte Carlo (integral)",
+        ("raylab.sampling.pdf_hemisphere", "raylab.sampling.pdf_cos_hemisphere"),
+    ),
+    Slide("Diffuse surface in env. by Monte Carlo", ("raylab.shade.env_uniform", "raylab.shade.env_cosine")),
+    Slide(
+        "Illumination as integration (any BRDF, over directions)",
+        ("raylab.shade.directional_light", "raylab.shade.env_brdf"),
+        "steps 1 and 4",
+    ),
+    Slide(
+        "Arbitrary surface in env. by Monte Carlo (integral)",
+        ("raylab.brdf.Phong", "raylab.environment.ImageEnvironment"),
+        "p proportional to the BRDF, and to the brightness",
+    ),
+    Slide(
+        "Arbitrary surface in env. by Monte Carlo",
+        ("raylab.shade.env_brightness", "raylab.shade.env_brdf"),
+        "the captions of the two boxes are swapped on the slide",
+    ),
+    Slide("Creating glossy reflections", ("raylab.sampling.sample_phong_lobe",), "matches Phong exactly"),
+    Slide("Depth of field (eye rays)", (), NOT_YET),
+    Slide("Motion blur (time)", (), NOT_YET),
+    Slide("The Blue Umbrella", (), "picture"),
+)
+
+
+def markdown() -> str:
+    """The table as docs/slides.md shows it."""
+    lines = ["| slide | function | note |", "|---|---|---|"]
+    for slide in TABLE:
+        functions = ", ".join(f"`{name}`" for name in slide.functions) or "–"
+        lines.append(f"| {slide.title} | {functions} | {slide.note} |")
+    return "\n".join(lines)

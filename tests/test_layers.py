@@ -1,0 +1,70 @@
+"""Imports go one way: in reading order, a module imports only from those above it."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / "raylab"
+
+# The reading path, top to bottom; then what stands beside it.
+ORDER = [
+    "_version", "errors", "description", "jit", "vec3", "view", "record", "rng", "samplers", "sampling", "brdf",
+    "point", "lights", "environment", "materials", "quadrics", "callbacks", "embree", "surface", "shadow", "shade",
+    "direct", "camera", "triangles", "geometry", "emitters", "palette", "sky", "scene", "strategies", "pixels", "image", "render",
+    "quadrature", "closed_forms", "io", "__init__", "slides", "explain", "progress", "study", "demo", "cli",
+]  # fmt: skip
+NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
+
+
+def modules() -> dict[str, Path]:
+    return {path.relative_to(PACKAGE).as_posix()[:-3]: path for path in PACKAGE.rglob("*.py")}
+
+
+def layer(name: str) -> int:
+    return ORDER.index(name.split("/")[0])
+
+
+def imported(path: Path) -> set[str]:
+    """The raylab modules that a file imports, at any depth of its code."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "raylab":
+            parts = node.module.split(".")[1:]
+            found |= {"/".join(parts)} if parts else {alias.name for alias in node.names}
+        elif isinstance(node, ast.Import):
+            found |= {"/".join(a.name.split(".")[1:]) for a in node.names if a.name.startswith("raylab.")}
+    return found - {""}
+
+
+def test_every_module_has_its_place():
+    assert {name.split("/")[0] for name in modules()} == set(ORDER)
+
+
+@pytest.mark.parametrize("name", sorted(modules()))
+def test_imports_go_one_way(name):
+    own = layer(name)
+    if name == "__init__":
+        own = layer("slides")  # the front door may open every room of the reading path
+    for other in imported(modules()[name]):
+        known = other if other.split("/")[0] in ORDER else "__init__"  # `from raylab import load`
+        assert layer(known) <= own, f"{name} imports {other}, which stands below it"
+
+
+@pytest.mark.parametrize("name", sorted(modules()))
+def test_numba_internals_stay_in_their_files(name):
+    if name in NUMBA_INTERNALS:
+        return
+    tree = ast.parse(modules()[name].read_text())
+    used = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+    used |= {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module}
+    assert not {u for u in used if u.split(".")[0] in ("numba", "llvmlite", "ctypes", "embreex")}
+
+
+@pytest.mark.parametrize("name", sorted(modules()))
+def test_no_fastmath_and_no_plain_cache(name):
+    source = modules()[name].read_text()
+    assert "fastmath=True" not in source
+    assert "cache=True" not in source or name in ("jit", "callbacks")
