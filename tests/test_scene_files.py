@@ -31,8 +31,8 @@ from raylab.description import (
     Sphere,
 )
 from raylab.io.image_file import decode_srgb, write_exr, write_png
-from raylab.io.mesh_file import vertex_normals
 from raylab.io.mitsuba_xml import read
+from raylab.triangles import vertex_normals
 
 EPS = np.finfo(float).eps
 SIX_DIGITS = 0.5e-5  # Mitsuba prints six significant digits
