@@ -1,0 +1,55 @@
+"""Small scenes that many tests share; few kinds, so that few kernels are compiled."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raylab import description as d
+from raylab.scene import Scene
+
+GREY = d.Diffuse(np.full(3, 0.5))
+GLOSSY = d.Phong(np.array([0.3, 0.2, 0.1]), np.full(3, 0.4), 40.0)
+
+
+def look_at(origin, target, up=(0.0, 0.0, 1.0)) -> np.ndarray:
+    origin, target = np.asarray(origin, float), np.asarray(target, float)
+    forward = (target - origin) / np.linalg.norm(target - origin)
+    left = np.cross(up, forward)
+    left /= np.linalg.norm(left)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.stack([left, np.cross(forward, left), forward], axis=1)
+    matrix[:3, 3] = origin
+    return matrix
+
+
+def moved(x: float, y: float, z: float, *size: float) -> np.ndarray:
+    matrix = np.diag([*(size or (1.0, 1.0, 1.0)), 1.0])
+    matrix[:3, 3] = (x, y, z)
+    return matrix
+
+
+def camera(width: int, fov: float = 45.0) -> d.Camera:
+    return d.Camera(to_world=look_at((0, -5, 3), (0, 0, 0.5)), fov=fov, width=width, height=width)
+
+
+def lamp(size: float = 0.7, radiance: float = 8.0) -> d.Rectangle:
+    return d.Rectangle(to_world=moved(1, -1, 3, size, -size, -1), radiance=np.full(3, radiance), front=None)
+
+
+def room(width: int = 16, material: d.Material = GREY, fov: float = 45.0) -> Scene:
+    """A floor, a cube and a rectangular lamp."""
+    shapes = (
+        d.Rectangle(to_world=moved(0, 0, 0, 4, 4, 1), front=material, back=material, name="floor"),
+        d.Cube(to_world=moved(0, 0, 0.5, 0.5, 0.5, 0.5), front=material, name="cube"),
+        lamp(),
+    )
+    return Scene(d.SceneDescription(camera=camera(width, fov), shapes=shapes))
+
+
+def outdoors(environment: d.Environment, width: int = 16, material: d.Material = GREY, fov: float = 45.0) -> Scene:
+    """A floor and a cube under a sky."""
+    shapes = (
+        d.Rectangle(to_world=moved(0, 0, 0, 4, 4, 1), front=material, back=material, name="floor"),
+        d.Cube(to_world=moved(0, 0, 0.5, 0.5, 0.5, 0.5), front=material, name="cube"),
+    )
+    return Scene(d.SceneDescription(camera=camera(width, fov), shapes=shapes, environment=environment))

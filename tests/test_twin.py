@@ -1,0 +1,85 @@
+"""The same source, compiled and in plain Python, gives the same picture; `make test` runs this file both ways.
+
+Compiled, the pictures are written down in numbers by a second process without the compiler, and compared.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+from scenes import GLOSSY, camera, lamp, moved, outdoors, room
+
+from raylab import description as d
+from raylab.render import render
+from raylab.scene import Scene
+
+
+def quadrics() -> Scene:
+    """A sphere, a disk and a cylinder under a spherical lamp and a point light."""
+    grey = d.Diffuse(np.full(3, 0.5))
+    return Scene(
+        d.SceneDescription(
+            camera=camera(4),
+            shapes=(
+                d.Sphere(center=np.array([0, 0, 0.6]), radius=0.6, front=grey),
+                d.Disk(to_world=moved(0, 0, 0, 3, 3, 1), front=grey),
+                d.Cylinder(p0=np.array([1.0, 0, 0]), p1=np.array([1.0, 0.2, 1]), radius=0.3, front=grey, back=grey),
+                d.Sphere(center=np.array([1, -2, 3.0]), radius=0.5, radiance=np.full(3, 9.0), front=None),
+            ),
+            lights=(d.PointLight(np.array([-2.0, -2, 4]), np.full(3, 5.0)),),
+        )
+    )
+
+
+def scenes() -> dict[str, tuple[Scene, str, str]]:
+    image = np.random.default_rng(3).random((6, 12, 3))
+    texture = d.Diffuse(d.Bitmap(np.random.default_rng(4).random((3, 5, 3))))
+    sun = d.SceneDescription(
+        camera=camera(4),
+        shapes=(d.Rectangle(to_world=moved(0, 0, 0, 4, 4, 1), front=texture), lamp()),
+        lights=(d.DirectionalLight(np.array([0.2, 0.1, -1.0]), np.ones(3)),),
+    )
+    return {
+        "area": (room(4), "area", "sobol"),
+        "area_diffuse": (room(4), "area_diffuse", "stratified"),
+        "glossy": (room(4, GLOSSY), "direct", "independent"),
+        "uniform": (outdoors(d.ConstantEnvironment(np.ones(3)), 4), "env_uniform", "independent"),
+        "cosine": (outdoors(d.GradientEnvironment(np.ones(3), 0.5 * np.eye(3)), 4), "env_cosine", "sobol"),
+        "image": (outdoors(d.ImageEnvironment(image), 4, GLOSSY), "direct", "independent"),
+        "brightness": (outdoors(d.ImageEnvironment(image, filter="nearest"), 4), "env_brightness", "independent"),
+        "quadrics": (quadrics(), "direct", "independent"),
+        "texture and sun": (Scene(sun), "direct", "independent"),
+    }
+
+
+def pictures() -> dict[str, list[float]]:
+    return {
+        name: render(scene, shade, sampler=sampler, spp=4, seed=2, threads=1).mean.ravel().tolist()
+        for name, (scene, shade, sampler) in scenes().items()
+    }
+
+
+def test_plain_python_renders_every_kind_of_scene():
+    """Runs in whichever world this process is in: no NaN, nothing black."""
+    for name, picture in pictures().items():
+        assert np.isfinite(picture).all(), name
+        assert max(picture) > 0, name
+
+
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="compares with a process that has no compiler")
+def test_compiled_and_plain_python_agree():
+    """To rounding: the compiler may fuse nothing, but the C library's sin and exp may differ in the last digit."""
+    environment = dict(os.environ, NUMBA_DISABLE_JIT="1", PYTHONPATH=str(Path(__file__).parent))
+    program = "import json, test_twin; print(json.dumps(test_twin.pictures()))"
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
+    plain, compiled = json.loads(done.stdout), pictures()
+    assert plain.keys() == compiled.keys()
+    for name, picture in compiled.items():
+        np.testing.assert_allclose(picture, plain[name], rtol=1e-9, atol=1e-12, err_msg=name)
