@@ -63,8 +63,9 @@ class Phong(NamedTuple):
         if u[0] < diffuse:
             w = sample_cos_hemisphere(N, (u[0] / diffuse, u[1]))
         else:
-            w = sample_phong_lobe(reflect(V, N), self.n, ((u[0] - diffuse) / (1.0 - diffuse), u[1]))
-        return w, self.pdf(V, w, N)
+            u1 = min((u[0] - diffuse) / (1.0 - diffuse), 1.0 - 2.0**-53)
+            w = sample_phong_lobe(reflect(V, N), self.n, (u1, u[1]))
+        return w, max(self.pdf(V, w, N), 2.0**-1000)  # never 0 / 0 where both f_r and p underflow
 
     def pdf(self, V, w, N):
         diffuse = diffuse_share(self)

@@ -24,7 +24,9 @@ from raylab.samplers import NAMES as SAMPLERS
 
 INTERRUPTED = 130  # 128 + SIGINT, as a shell counts
 SCENE = click.argument("scene", type=click.Path(path_type=Path))
-PARAMETERS = click.option("-D", "parameters", metavar="NAME=VALUE", multiple=True, help="Value of $NAME in the scene file.")
+PARAMETERS = click.option(
+    "-D", "parameters", metavar="NAME=VALUE", multiple=True, help="Value of $NAME in the scene file."
+)
 THREADS = click.option("--threads", type=click.IntRange(min=1), help="Threads; all cores by default.")
 SEED = click.option("--seed", type=click.IntRange(0, 2**63 - 1), help="The same seed gives the same picture.")
 PROGRESS = click.option("--progress/--no-progress", default=None, help="Show progress; by default on a terminal.")
@@ -61,14 +63,18 @@ def commands() -> None:
 @click.option("--sampler", help=f"{', '.join(SAMPLERS)}; the scene's own by default.")
 @click.option("--spp", type=int, help="Samples per pixel; the scene's own by default.")
 @click.option("--seconds", type=float, help="Stop after this time instead.")
-@click.option("--relative-error", type=float, help="Stop at this noise instead: standard error of a pixel over the mean.")
+@click.option(
+    "--relative-error", type=float, help="Stop at this noise instead: standard error of a pixel over the mean."
+)
 @SEED
 @THREADS
 @PARAMETERS
 @click.option("-o", "outputs", metavar="FILE", type=click.Path(path_type=Path), multiple=True,
               help="Write .png, .exr or .npz; can be repeated.")  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of sentences.")
-@click.option("--explain", "explained", is_flag=True, help="Say what the compiled kernel contains and what was left out.")
+@click.option(
+    "--explain", "explained", is_flag=True, help="Say what the compiled kernel contains and what was left out."
+)
 @PROGRESS
 def render_command(
     scene: Path,
@@ -164,7 +170,9 @@ def study_command(
 
 @commands.command("demo")
 @click.option("-o", "folder", default="demo", show_default=True, type=click.Path(path_type=Path, file_okay=False))
-@click.option("--scenes", default="reference_scenes", show_default=True, type=click.Path(path_type=Path, file_okay=False))
+@click.option(
+    "--scenes", default="reference_scenes", show_default=True, type=click.Path(path_type=Path, file_okay=False)
+)
 @THREADS
 def demo_command(folder: Path, scenes: Path, threads: int | None) -> int:
     """The lecture's pictures and its central plot, in a few minutes."""

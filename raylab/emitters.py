@@ -28,7 +28,10 @@ _SHAPES = {
 
 def colour(value: Any, what: str) -> Array:
     """`value` as a linear RGB triple; SceneError unless it is finite and not negative."""
-    rgb = np.broadcast_to(np.asarray(value, np.float64), 3)
+    rgb = np.asarray(value, np.float64)
+    if rgb.shape not in ((), (3,)):
+        raise SceneError(f"{what} must be one number or an RGB triple, got shape {rgb.shape}")
+    rgb = np.broadcast_to(rgb, 3)
     if not np.all(np.isfinite(rgb)) or rgb.min() < 0.0:
         raise SceneError(f"{what} must be finite and not negative, got {rgb.tolist()}")
     return rgb

@@ -55,8 +55,7 @@ class ConstantEnvironment(NamedTuple):
         return self.radiance
 
     def sample(self, N, u):
-        w = sample_hemisphere(N, u)
-        return w, pdf_hemisphere(N, w)
+        return sample_hemisphere(N, u), 0.5 / PI
 
     def pdf(self, N, w):
         return pdf_hemisphere(N, w)

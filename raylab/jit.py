@@ -43,7 +43,8 @@ class Compiled:
         )
 
     def __call__(self, *arguments: Any) -> Any:
-        return self._outer(*arguments)
+        # numba takes every Python int for 64 bits with a sign
+        return self._outer(*(np.uint64(a) if type(a) is int and a >= 1 << 63 else a for a in arguments))
 
 
 class _InnerCompiler(Compiler):

@@ -45,9 +45,10 @@ def dist_sqr(a, b):
 
 
 @njit
-def facet_terms(n, extents, twice_area):
-    """The parts of slack and tilt that are the same all over a triangle; `extents` are those of its bounding box."""
-    sliver = 2.0 / twice_area
+def facet_terms(n, extents, inverse_area):
+    """The parts of slack and tilt that are the same all over a triangle; `extents` are those of its bounding box,
+    `inverse_area` is 1 / |e1 x e2|."""
+    sliver = 2.0 * inverse_area
     c = Vec3(extents.y * extents.z * sliver, extents.z * extents.x * sliver, extents.x * extents.y * sliver)
     slack = dot(absolute(n), extents) + dot(c, extents) + extents.x + extents.y + extents.z
     return slack * ULPS, (absolute(n) * 2.0 + c) * ULPS
@@ -75,14 +76,14 @@ def free_point(p):
 def triangle_frame(v0, v1, v2):
     """Unit normal and `facet_terms` of a triangle."""
     n = cross(v1 - v0, v2 - v0)
-    twice_area = length(n)
-    n = n / twice_area
+    inverse_area = 1.0 / length(n)
+    n = n * inverse_area
     extents = Vec3(
         max(v0.x, v1.x, v2.x) - min(v0.x, v1.x, v2.x),
         max(v0.y, v1.y, v2.y) - min(v0.y, v1.y, v2.y),
         max(v0.z, v1.z, v2.z) - min(v0.z, v1.z, v2.z),
     )
-    slack, tilt = facet_terms(n, extents, twice_area)
+    slack, tilt = facet_terms(n, extents, inverse_area)
     return n, slack, tilt
 
 

@@ -60,7 +60,9 @@ class Bar:
         form = "{l_bar}{bar}| {n:g} of {total:g}{unit} [{elapsed}<{remaining}{postfix}]"
         if total is None:
             form = "{n:g}{unit} [{elapsed}{postfix}]"
-        return tqdm(desc="raylab", total=total, unit=unit, bar_format=form, mininterval=0.1, dynamic_ncols=True, leave=True)
+        return tqdm(
+            desc="raylab", total=total, unit=unit, bar_format=form, mininterval=0.1, dynamic_ncols=True, leave=True
+        )
 
 
 class StepBar:

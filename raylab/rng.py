@@ -54,7 +54,8 @@ def permute(i, n, key):
     """Element i of a permutation of 0 .. n-1 chosen by `key`.
 
     Source: Kensler 2013, "Correlated multi-jittered sampling", Pixar TM 13-01 (cycle walking), with a keyed
-    Feistel network of four rounds as the bijection on the next even power of two.
+    Feistel network of four rounds as the bijection on the next even power of two. A keyed rotation at the end brings
+    each element to each place equally often.
     """
     half = 1
     while (1 << (2 * half)) < n:
@@ -67,4 +68,4 @@ def permute(i, n, key):
             left, right = right, left ^ (int(combine(key, right * 4 + turn) >> u64(33)) & low)
         x = (left << half) | right
         if x < n:
-            return x
+            return (x + int(combine(key, -1) >> u64(11))) % n

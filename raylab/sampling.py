@@ -180,8 +180,7 @@ def sample_cone(axis, sin_max, u):
 @njit
 def pdf_cone(axis, sin_max, w):
     """p(w) = 1 / (2 pi (1 - cos theta_max)), 1/sr; 0 outside."""
-    sine = cross(axis, w)
-    if dot(axis, w) <= 0.0 or dot(sine, sine) > sin_max * sin_max * (1.0 + 1e-12):
+    if dot(axis, w) <= 0.0 or length(cross(axis, w)) > sin_max + 2.0**-50:  # directions are rounded to 2^-53
         return 0.0
     return 0.5 / (PI * one_minus_cos(sin_max))
 
@@ -209,14 +208,18 @@ def pdf_phong_lobe(R, n, w):
 
 @njit
 def invert_phong_lobe(R, n, w):
-    sine = cross(R, w)
-    return -math.expm1((n + 1.0) * 0.5 * math.log1p(-min(1.0, dot(sine, sine)))), drop(R, w)
+    return -math.expm1((n + 1.0) * log_cos(R, w)), drop(R, w)
 
 
 @njit
 def cos_power(R, n, w):
-    """max(0, R . w)^n = exp(n/2 log1p(-sin^2 alpha)): exact also for n = 1e7, where pow loses all digits."""
-    if dot(R, w) <= 0.0:
-        return 0.0
+    """max(0, R . w)^n"""
+    return math.exp(n * log_cos(R, w)) if dot(R, w) > 0.0 else 0.0
+
+
+@njit
+def log_cos(R, w):
+    """log(R . w) for R . w > 0. Near 0, where n = 1e7 magnifies each digit, from the sine: log1p(-sin^2) / 2."""
     sine = cross(R, w)
-    return math.exp(0.5 * n * math.log1p(-min(1.0, dot(sine, sine))))
+    sin_sqr = dot(sine, sine)
+    return 0.5 * math.log1p(-sin_sqr) if sin_sqr < 0.5 else math.log(dot(R, w))

@@ -158,7 +158,7 @@ def pinhole(camera: d.Camera, placement: Placement) -> Pinhole:
     tan_x, tan_y = half_extents(camera)
     offset_x, offset_y = camera.principal_point_offset
     left, up, forward = (matrix[:3, k] / np.linalg.norm(matrix[:3, k]) for k in range(3))
-    corner = forward + left * tan_x * (1.0 + 2.0 * offset_x) + up * tan_y * (1.0 + 2.0 * offset_y)
+    corner = forward + left * tan_x * (1.0 - 2.0 * offset_x) + up * tan_y * (1.0 - 2.0 * offset_y)
     across, down = left * (-2.0 * tan_x / camera.width), up * (-2.0 * tan_y / camera.height)
     origin = placement.points(matrix[:3, 3])
     return Pinhole(

@@ -52,12 +52,12 @@ def image_environment(described: d.ImageEnvironment) -> Any:
     pixels = np.asarray(described.pixels)
     if pixels.ndim != 3 or pixels.shape[2] != 3 or min(pixels.shape[:2]) < 1:
         raise SceneError(f"environment: the image must be (h, w, 3), got {pixels.shape}")
-    bad = ~(np.isfinite(pixels) & (pixels >= 0.0))
+    bad = ~((pixels >= 0.0) & (pixels <= np.finfo(np.float32).max))
     if bad.any():
         row, column, _ = (int(i) for i in np.argwhere(bad)[0])
         raise SceneError(
-            f"environment: {int(bad.any(axis=2).sum())} texels are negative or not finite, the first in row {row}, "
-            f"column {column}: {pixels[row, column].tolist()}"
+            f"environment: {int(bad.any(axis=2).sum())} texels are negative, not finite or above float32, the first in "
+            f"row {row}, column {column}: {pixels[row, column].tolist()}"
         )
     smooth = described.filter == "bilinear"
     if smooth and len(pixels) < 2:

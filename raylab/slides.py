@@ -86,6 +86,6 @@ def markdown() -> str:
     """The table as docs/slides.md shows it."""
     lines = ["| slide | function | note |", "|---|---|---|"]
     for slide in TABLE:
-        functions = ", ".join(f"`{name}`" for name in slide.functions) or "–"
+        functions = ", ".join(f"`{name}`" for name in slide.functions) or "-"
         lines.append(f"| {slide.title} | {functions} | {slide.note} |")
     return "\n".join(lines)

@@ -233,7 +233,7 @@ def length(a):
 
 @njit
 def normalize(a):
-    """a / |a|; NaN for the zero vector."""
+    """a / |a|; for the zero vector NaN compiled, ZeroDivisionError in plain Python."""
     return a / length(a)
 
 

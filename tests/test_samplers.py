@@ -1,0 +1,311 @@
+"""Samplers: uniform points, exact grids, Sobol' nets in base 2, Owen scrambling, and the variance that theory promises."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from helpers import ALPHA, COMPILED, chi_square_p, size
+from scipy import stats
+from scipy.stats import qmc
+
+from raylab import samplers
+from raylab.jit import njit
+from raylab.rng import combine
+
+M32 = 0xFFFFFFFF
+
+
+@njit
+def draw(sampler, pixels, stream, samples, lone, out):
+    """Fill out[i] (pairs, 2) with the squares of sample samples[i] of pixel pixels[i], after `lone` single numbers."""
+    for i in range(out.shape[0]):
+        source = sampler.stream(pixels[i], stream, samples[i])
+        for _ in range(lone):
+            source.number()
+        for k in range(out.shape[1]):
+            out[i, k, 0], out[i, k, 1] = source.square()
+
+
+@njit
+def draw_numbers(sampler, samples, out):
+    for i in range(out.shape[0]):
+        source = sampler.stream(0, 0, samples[i])
+        for k in range(out.shape[1]):
+            out[i, k] = source.number()
+
+
+def points(name, samples, pairs=1, pixel=0, stream=0, lone=0, seed=0, grid=1):
+    """Squares (n, pairs, 2) of `samples` (how many, or which), of one pixel or of as many."""
+    samples = np.atleast_1d(np.arange(samples) if isinstance(samples, int) else samples)
+    pixels, samples = (a.astype(np.int64) for a in np.broadcast_arrays(pixel, samples))
+    out = np.empty((len(samples), pairs, 2))
+    draw(samplers.make(name, seed, grid), pixels, stream, samples, lone, out)
+    assert out.min() >= 0.0
+    assert out.max() < 1.0
+    return out
+
+
+def numbers(name, samples, dimensions, grid=1):
+    samples = np.arange(samples) if isinstance(samples, int) else samples
+    out = np.empty((len(samples), dimensions))
+    draw_numbers(samplers.make(name, 0, grid), samples, out)
+    return out
+
+
+def cells(u, n):
+    """The number of the cell [i/n, (i+1)/n), edges as rounded, that holds u."""
+    return np.searchsorted(np.arange(n + 1) / n, u, side="right") - 1
+
+
+# --- independent ---
+
+
+def test_independent_points_are_uniform_in_the_square():
+    n, side = size(100_000, 3_600), size(16, 6)
+    p = points("independent", n, pairs=2)
+    for pair in (p[:, 0], p[:, 1], p[:, :, 0]):  # the last: the first numbers of two squares
+        counts, *_ = np.histogram2d(*pair.T, bins=side, range=[[0, 1], [0, 1]])
+        assert chi_square_p(counts, np.full(side**2, n / side**2)) > ALPHA
+
+
+# --- stratified ---
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 7, 9, 12, 13, 16, 36, 64])
+def test_stratified_points_fall_one_into_each_cell_of_each_pair(n):
+    across, down = samplers.grid(n)
+    assert across * down == n
+    for k in range(2):  # samples n .. 2 n - 1 are a new grid
+        p = points("stratified", np.arange(n) + k * n, pairs=3, grid=n)
+        for pair in p.transpose(1, 2, 0):
+            cell = cells(pair[1], down) * across + cells(pair[0], across)
+            assert sorted(cell) == list(range(n))
+
+
+@pytest.mark.parametrize("n", [1, 5, 16])
+def test_stratified_numbers_fall_one_into_each_interval(n):
+    u = numbers("stratified", n, 3, grid=n)
+    for k in range(3):
+        assert sorted(cells(u[:, k], n)) == list(range(n))
+
+
+def test_stratified_grids_pixels_and_pairs_differ():
+    n = 16
+    p = points("stratified", 2 * n, pairs=2, grid=n)
+    other = points("stratified", n, pairs=2, pixel=1, grid=n)
+    stream = points("stratified", n, pairs=2, stream=1, grid=n)
+    assert len(np.unique(np.concatenate([p, other, stream]))) == 4 * n * 4  # no number twice
+
+
+def test_a_point_in_its_cell_is_uniform():
+    n = size(20_000, 1_000)
+    p = points("stratified", np.arange(n), grid=4)[:, 0]
+    inside = (p * 2) % 1.0
+    counts, *_ = np.histogram2d(*inside.T, bins=3, range=[[0, 1], [0, 1]])
+    assert chi_square_p(counts, np.full(9, len(p) / 9)) > ALPHA
+
+
+@pytest.mark.parametrize(("n", "want"), [(1, (1, 1)), (7, (7, 1)), (12, (4, 3)), (16, (4, 4)), (1000, (40, 25))])
+def test_grid_is_the_most_nearly_square_one(n, want):
+    assert samplers.grid(n) == want
+
+
+def test_a_stratum_never_reaches_into_the_next():
+    for n in (3, 7, 10, 49, 1000):
+        for i in (0, n // 2, n - 1):
+            for bits in (0, 2**64 - 1):
+                assert i / n <= samplers.stratum(i, n, np.uint64(bits)) < (i + 1) / n
+
+
+# --- Sobol' ---
+
+
+def is_net(p, t=0):
+    """Is p, 2^m points, a (t, m, s)-net in base 2: 2^t points in every elementary interval of volume 2^(t - m)?"""
+    m, s = len(p).bit_length() - 1, p.shape[1]
+    shapes = [k for k in np.ndindex((max(0, m - t) + 1,) * s) if sum(k) == max(0, m - t)]
+    for shape in shapes:
+        index = np.zeros(len(p), np.int64)
+        for axis, k in enumerate(shape):
+            index = (index << k) + (p[:, axis] * 2.0**k).astype(np.int64)
+        if not np.all(np.bincount(index, minlength=len(p) >> min(t, m)) == 1 << min(t, m)):
+            return False
+    return True
+
+
+MAX_M = size(10, 6)
+FIRST_PAIRS = [0, 2, 4]  # pairs of dimensions (0, 1), (4, 5), (8, 9): the first two of each block of four
+
+
+@pytest.mark.parametrize("pixel", [0, 12345])
+def test_sobol_pairs_are_nets_for_every_prefix_and_every_later_block_of_points(pixel):
+    p = points("sobol", 2 << MAX_M, pairs=6, pixel=pixel)
+    for m in range(MAX_M + 1):
+        n = 1 << m
+        for k in FIRST_PAIRS:
+            assert is_net(p[:n, k])
+            assert is_net(p[n : 2 * n, k])
+            assert is_net(p[-n:, k])
+    assert not is_net(np.random.default_rng(1).random((64, 2)))  # the check can fail
+
+
+def test_sobol_blocks_of_four_dimensions_are_nets_of_quality_three():
+    # Sobol' 1967: t = sum of (degree - 1) of the primitive polynomials, here 0 + 0 + 1 + 2, and 1 + 2 for (2, 3)
+    p = points("sobol", 1 << size(8, 5), pairs=4)
+    for block in (0, 2):
+        assert is_net(p[:, block : block + 2].reshape(len(p), 4), t=3)
+        assert is_net(p[:, block + 1], t=3)
+
+
+def test_sobol_numbers_are_stratified_for_every_prefix():
+    u = numbers("sobol", 1 << MAX_M, 9)
+    for m in range(MAX_M + 1):
+        for k in range(9):
+            assert is_net(u[: 1 << m, k : k + 1])
+
+
+def test_a_sobol_square_starts_at_an_even_dimension():
+    assert np.array_equal(points("sobol", 8, lone=1), points("sobol", 8, pairs=2)[:, 1:])
+    u, p = numbers("sobol", 8, 2), points("sobol", 8)
+    assert np.array_equal(u, p[:, 0])
+
+
+def test_sobol_streams_are_scrambled_apart():
+    p = np.stack([points("sobol", 64, pairs=4, pixel=i, stream=j, seed=k) for i, j, k in np.ndindex(2, 2, 2)])
+    assert len(np.unique(p)) == p.size
+
+
+def reversed_bits(x):
+    return int(f"{int(x):032b}"[::-1], 2)
+
+
+def unscrambled(first, n):
+    """n points of scipy, 32 digits, from its number `first` on, and their numbers: it walks in Gray-code order."""
+    engine = qmc.Sobol(4, scramble=False, bits=32)
+    i = np.arange(first, first + n)
+    return i ^ (i >> 1), ((engine.fast_forward(first) if first else engine).random(n) * 2.0**32).astype(np.uint64)
+
+
+def test_the_table_is_the_sequence_of_joe_and_kuo():
+    index, want = unscrambled(0, 4096)
+    table = samplers.sobol_table()
+    assert table.shape == (4, 4096)
+    for axis in range(4):
+        assert [reversed_bits(x) for x in table[axis, index]] == want[:, axis].tolist()
+
+
+@pytest.mark.parametrize("first", [0, 4096, 3 << 12, 5 << 16])
+def test_points_beyond_the_table_are_the_sequence_too(first):
+    index, want = unscrambled(first, 64)
+    drawn = numbers("sobol", index, 4)
+    key = combine(np.uint64(combine(np.uint64(0), 0)), 0)
+    for axis in range(4):
+        seed = np.uint64(combine(np.uint64(key), axis))
+        digits = [reversed_bits(scramble(reversed_bits(x), seed)) for x in want[:, axis]]
+        assert np.floor(drawn[:, axis] * 2.0**32).astype(np.int64).tolist() == digits
+
+
+def scramble(x, seed):
+    return int(samplers.scramble_reversed(np.uint64(x), np.uint64(seed)))
+
+
+def test_the_scramble_keeps_common_digits_and_tells_the_next_apart():
+    """Nested: if two numbers first differ in digit k, so do their images. Hence it is a bijection."""
+    rng = np.random.default_rng(2)
+    for _ in range(size(20, 4)):
+        seed, x = int(rng.integers(2**32)), int(rng.integers(2**32))
+        for k in range(32):  # reversed: digit k is bit k
+            y = (x ^ (1 << k) ^ (int(rng.integers(2**32)) << (k + 1))) & M32
+            difference = scramble(x, seed) ^ scramble(y, seed)
+            assert difference & ((2 << k) - 1) == 1 << k
+            assert difference <= M32
+
+
+def test_reverse_bits_reverses():
+    for x in (0, 1, M32, 0x12345678, 1 << 31):
+        assert int(samplers.reverse_bits(np.uint64(x))) == reversed_bits(x)
+
+
+def test_the_scramble_uses_all_of_its_seed():
+    assert len({scramble(0x12345678, 1 << k) for k in range(32)}) == 32
+
+
+def test_points_are_uniform_over_the_scrambles():
+    n, side = size(50_000, 2_000), size(16, 4)
+    for index in (0, 5, 9000):
+        p = points("sobol", np.full(n, index), pairs=3, pixel=np.arange(n))
+        for pair in (p[:, 0], p[:, 1], p[:, 2], p[:, :2, 0], p[:, ::2, 0]):
+            counts, *_ = np.histogram2d(*pair.T, bins=side, range=[[0, 1], [0, 1]])
+            assert chi_square_p(counts, np.full(side**2, n / side**2)) > ALPHA
+        distance = stats.kstest(p[:, 0, 0], "uniform").statistic
+        assert 2.0 * math.exp(-2.0 * n * distance**2) > ALPHA
+
+
+def test_the_two_halves_of_a_stream_are_scrambled_independently():
+    """Owen's scramble: below the first digit, the points 0 and 1 (which differ there) are independent."""
+    n, side = size(100_000, 2_000), size(16, 4)
+    p = points("sobol", np.tile([0, 1], n), pixel=np.repeat(np.arange(n), 2))[:, 0, 0].reshape(n, 2)
+    inside = (p * 2.0) % 1.0
+    counts, *_ = np.histogram2d(*inside.T, bins=side, range=[[0, 1], [0, 1]])
+    assert chi_square_p(counts, np.full(side**2, n / side**2)) > ALPHA
+
+
+@pytest.mark.parametrize("bits", [1, 3, 6])
+def test_the_shuffle_of_points_keeps_every_dyadic_range(bits):
+    for seed in (1, 2**32 + 5):
+        low, high = 1 << bits, 2 << bits
+        image = [int(samplers.shuffle_index(i, np.uint64(seed))) for i in range(high)]
+        assert sorted(image[low:high]) == list(range(low, high))
+        assert image[:2] == [0, 1]
+
+
+# --- variance ---
+
+RUNS = size(256, 16)
+SIZES = [2**k for k in range(4, size(10, 7) + 1)]
+
+
+def smooth(u):
+    """(u e^u)(v e^v), of integral 1 and variance ((e^2 - 1)/4)^2 - 1."""
+    return u[..., 0] * np.exp(u[..., 0]) * u[..., 1] * np.exp(u[..., 1])
+
+
+VARIANCE = ((math.e**2 - 1.0) / 4.0) ** 2 - 1.0
+
+
+def means(name, n):
+    """RUNS means of n points each, from as many pixels."""
+    p = points(name, np.tile(np.arange(n), RUNS), pixel=1000 * n + np.repeat(np.arange(RUNS), n), grid=n)
+    return smooth(p[:, 0]).reshape(RUNS, n).mean(axis=1)
+
+
+def upper(variance, runs):
+    """The upper end of a one-sided confidence interval of a variance, for normally distributed means."""
+    return variance * (runs - 1) / stats.chi2.isf(1.0 - ALPHA, runs - 1)
+
+
+@pytest.mark.parametrize("name", ["independent", "stratified", "sobol"])
+def test_means_are_unbiased_and_no_worse_than_theory(name):
+    n = size(256, 64)
+    m = means(name, n)
+    assert abs(m.mean() - 1.0) < stats.norm.isf(ALPHA / 2) * math.sqrt(VARIANCE / n / RUNS)
+    bound = {"independent": 1.0, "stratified": 1.0, "sobol": math.e}[name] * VARIANCE / n  # Owen 1997: e sigma^2 / n
+    lower = m.var(ddof=1) * (RUNS - 1) / stats.chi2.isf(ALPHA, RUNS - 1)
+    assert lower < bound
+    if name == "independent":
+        assert upper(m.var(ddof=1), RUNS) > bound  # and no better: independent is independent
+
+
+def test_the_variance_of_sobol_falls_like_n_to_the_minus_three():
+    """Owen 1997: n^-3 log(n) for a smooth integrand in the plane; the slope in log-log must be below -2.5."""
+    log_n = np.log2(SIZES)
+    log_v = np.log2([means("sobol", n).var(ddof=1) for n in SIZES])
+    error = math.sqrt(2.0 / (RUNS - 1)) / math.log(2.0) / math.sqrt(((log_n - log_n.mean()) ** 2).sum())
+    slope = np.polyfit(log_n, log_v, 1)[0]
+    if COMPILED:
+        assert slope + stats.norm.isf(ALPHA) * error < -2.5, (slope, error)
+    else:
+        assert slope < -2.0 + 2.0 * error, (slope, error)  # sixteen runs only: clearly better than stratified
+
