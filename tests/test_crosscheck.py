@@ -1,0 +1,170 @@
+"""The same files in Mitsuba 3 and in raylab: each pixel agrees within the joint standard error.
+
+Needs the extra [crosscheck]; run by `make crosscheck`. Mitsuba's `scalar_rgb` variant is used, which needs no LLVM.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.ndimage import maximum_filter
+
+import raylab
+
+pytestmark = pytest.mark.crosscheck
+SCENES = Path(__file__).parents[1] / "reference_scenes"
+WIDTH, HEIGHT = 48, 36
+REPEATS = 24  # pictures of Mitsuba's, from which its standard errors are taken
+ALPHA = 1e-6  # probability of a false alarm, for each scene
+
+SHAPES = """
+<scene version="3.0.0">
+    <integrator type="direct"/>
+    <sensor type="perspective">
+        <float name="fov" value="40"/>
+        <float name="principal_point_offset_x" value="0.05"/>
+        <transform name="to_world"><lookat origin="1,-5,3" target="0,0,0.7" up="0,0,1"/></transform>
+        <film type="hdrfilm">
+            <integer name="width" value="$width"/><integer name="height" value="$height"/>
+            <rfilter type="{filter}"/>
+        </film>
+        <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>
+    </sensor>
+    <shape type="rectangle">
+        <transform name="to_world"><scale value="6"/></transform>
+        <bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.6,0.5,0.4"/></bsdf></bsdf>
+    </shape>
+    <shape type="sphere">
+        <point name="center" x="0" y="0" z="0.8"/><float name="radius" value="0.8"/>
+        <bsdf type="diffuse"><rgb name="reflectance" value="0.2,0.5,0.8"/></bsdf>
+    </shape>
+    <shape type="cylinder">
+        <point name="p0" value="1.5,0,0"/><point name="p1" value="1.5,0.4,1.2"/><float name="radius" value="0.3"/>
+        <bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.8,0.2,0.2"/></bsdf></bsdf>
+    </shape>
+    <shape type="cube">
+        <transform name="to_world">
+            <scale value="0.4"/><rotate z="1" angle="30"/><translate x="-1.6" y="-0.4" z="0.41"/>
+        </transform>
+        <bsdf type="diffuse"/>
+    </shape>
+    <shape type="disk">
+        <transform name="to_world">
+            <scale value="0.7"/><rotate x="1" angle="150"/><translate x="-1" y="-1" z="3"/>
+        </transform>
+        <emitter type="area"><rgb name="radiance" value="10,9,8"/></emitter>
+    </shape>
+    <shape type="sphere">
+        <point name="center" x="2" y="-2" z="3"/><float name="radius" value="0.4"/>
+        <emitter type="area"><rgb name="radiance" value="5,9,15"/></emitter>
+    </shape>
+    <emitter type="point"><point name="position" x="-3" y="-3" z="4"/><rgb name="intensity" value="8,8,4"/></emitter>
+    <emitter type="directional">
+        <vector name="direction" value="0.5,0.3,-1"/><rgb name="irradiance" value="0.5"/>
+    </emitter>
+</scene>
+"""
+
+SKY = """
+<scene version="3.0.0">
+    <integrator type="direct"/>
+    <sensor type="perspective">
+        <float name="fov" value="35"/><string name="fov_axis" value="y"/>
+        <transform name="to_world"><lookat origin="1,2.5,5" target="0,0.6,0" up="0,1,0"/></transform>
+        <film type="hdrfilm">
+            <integer name="width" value="$width"/><integer name="height" value="$height"/><rfilter type="box"/>
+        </film>
+        <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>
+    </sensor>
+    <shape type="rectangle">
+        <transform name="to_world"><rotate x="1" angle="-90"/><scale value="3"/></transform>
+        <bsdf type="twosided"><bsdf type="diffuse">
+            <texture type="bitmap" name="reflectance">
+                <string name="filename" value="{board}"/><transform name="to_uv"><scale value="2"/></transform>
+            </texture>
+        </bsdf></bsdf>
+    </shape>
+    <shape type="ply">
+        <string name="filename" value="{knot}"/>
+        <transform name="to_world"><scale value="0.8"/><translate y="0.9"/></transform>
+        <bsdf type="diffuse"><rgb name="reflectance" value="0.7,0.5,0.3"/></bsdf>
+    </shape>
+    <shape type="cube">
+        <transform name="to_world">
+            <scale value="0.3"/><rotate y="1" angle="25"/><translate x="1.2" y="0.31" z="0.5"/>
+        </transform>
+        <bsdf type="diffuse">
+            <texture type="bitmap" name="reflectance"><string name="filename" value="{board}"/></texture>
+        </bsdf>
+    </shape>
+    <emitter type="envmap">
+        <string name="filename" value="{sky}"/><float name="scale" value="0.7"/>
+        <transform name="to_world"><rotate y="1" angle="40"/></transform>
+    </emitter>
+</scene>
+"""
+
+
+@pytest.fixture(scope="module")
+def mitsuba():
+    import mitsuba
+
+    mitsuba.set_variant("scalar_rgb")
+    return mitsuba
+
+
+def parameters(text: str, spp: int) -> dict[str, str]:
+    """Those of width, height and spp that the file knows."""
+    wanted = {"width": str(WIDTH), "height": str(HEIGHT), "spp": str(spp)}
+    return {name: value for name, value in wanted.items() if f"${name}" in text}
+
+
+def theirs(mitsuba, path: Path, spp: int) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and standard error (h, w, 3) of Mitsuba's pictures."""
+    scene = mitsuba.load_file(str(path), **parameters(path.read_text(), spp))
+    pictures = np.array([np.array(mitsuba.render(scene, spp=spp, seed=k))[..., :3] for k in range(REPEATS)], float)
+    return pictures.mean(axis=0), stats.sem(pictures, axis=0)
+
+
+def agree(mitsuba, path: Path, spp: int, shade: str = "direct") -> None:
+    expected, error = theirs(mitsuba, path, spp)
+    scene = raylab.load(path, parameters(path.read_text(), spp))
+    image = raylab.render(scene, shade, sampler="independent", spp=REPEATS * spp, seed=7)
+    assert image.mean.shape == expected.shape
+    rounding = 4e-5 * np.abs(expected) + 1e-6  # of float32, in which Mitsuba works and sums up
+    # Where a filter's tail just reaches something bright, few samples or none hit it, and the standard error says 0:
+    # a pixel's mean cannot be known better than the step that one sample makes.
+    step = maximum_filter(expected, size=(5, 5, 1)) / (REPEATS * spp)
+    joint = np.hypot(np.hypot(image.standard_error, error), step)
+    z = np.maximum(np.abs(image.mean - expected) - rounding, 0.0) / np.maximum(joint, 1e-300)
+    limit = stats.t.isf(ALPHA / 2 / z.size, REPEATS - 1)
+    worst = np.unravel_index(np.argmax(z), z.shape)
+    assert z.max() < limit, f"{z.max():.1f} standard errors at {worst}: {image.mean[worst]} and {expected[worst]}"
+    whole = (image.image_mean - expected.mean(axis=(0, 1))) / np.hypot(
+        image.image_standard_error, np.sqrt((error**2).sum(axis=(0, 1))) / error[..., 0].size
+    )
+    assert np.abs(whole).max() < stats.norm.isf(ALPHA / 6)
+
+
+@pytest.mark.parametrize(
+    "name", ["soft_shadows", "cornell_box", "light_below_horizon", "ball_under_sky", "edge_occluder"]
+)
+def test_reference_scene(mitsuba, name):
+    agree(mitsuba, SCENES / name / "scene.xml", spp=256)
+
+
+@pytest.mark.parametrize("pixel_filter", ["box", "tent", "gaussian"])
+def test_all_shapes_lights_and_filters(mitsuba, tmp_path, pixel_filter):
+    path = tmp_path / "shapes.xml"
+    path.write_text(SHAPES.format(filter=pixel_filter))
+    agree(mitsuba, path, spp=256)
+
+
+def test_sky_texture_and_smooth_normals(mitsuba, tmp_path):
+    path = tmp_path / "sky.xml"
+    files = {"board": "still_life/board.png", "knot": "hdr_sky/knot.ply", "sky": "hdr_sky/sky.exr"}
+    path.write_text(SKY.format(**{name: SCENES / file for name, file in files.items()}))
+    agree(mitsuba, path, spp=256)
