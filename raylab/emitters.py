@@ -70,9 +70,9 @@ class AreaLights:
         p, to_world, side = row[1:4], np.linalg.inv(row[4:13].reshape(3, 3)), row[13]
         a, b, c = to_world.T
         if row[0] == quadrics.DISK:
-            n = np.cross(a, b)
-            area = np.pi * float(np.linalg.norm(n))
-            return self._add(shape, lights.DISK, p=p, e1=a, e2=b, n=n * side / np.linalg.norm(n), area=area)
+            n = row[10:13] * side  # the row of the world-to-local matrix: it keeps its side under a mirror
+            area = np.pi * float(np.linalg.norm(np.cross(a, b)))
+            return self._add(shape, lights.DISK, p=p, e1=a, e2=b, n=n / np.linalg.norm(n), area=area)
         radius = float(np.linalg.norm(a))
         scaled = to_world.T @ to_world / radius**2
         round_axes = 3 if row[0] == quadrics.SPHERE else 2

@@ -181,7 +181,7 @@ class SphereShape(NamedTuple):
         w = sample_cone(axis, sin_max, u)
         outwards = first_normal(axis, sin_max, w)
         y = curved_point(light.p + outwards * radius, outwards * side)
-        cos_y = -dot(outwards, w)
+        cos_y = max(0.0, -dot(outwards, w))
         return y, cos_y / (2.0 * PI * one_minus_cos(sin_max) * dist_sqr(x, y))
 
     def pdf(self, light, x, y):

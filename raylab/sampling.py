@@ -187,7 +187,8 @@ def pdf_cone(axis, sin_max, w):
 
 @njit
 def invert_cone(axis, sin_max, w):
-    return one_minus_cos(length(cross(axis, w))) / one_minus_cos(sin_max), drop(axis, w)
+    sine = cross(axis, w)
+    return dot(sine, sine) / (1.0 + dot(axis, w)) / one_minus_cos(sin_max), drop(axis, w)
 
 
 # --- Phong lobe: slide "Creating glossy reflections" ---
@@ -208,7 +209,7 @@ def pdf_phong_lobe(R, n, w):
 
 @njit
 def invert_phong_lobe(R, n, w):
-    return -math.expm1((n + 1.0) * log_cos(R, w)), drop(R, w)
+    return (-math.expm1((n + 1.0) * log_cos(R, w)) if dot(R, w) > 0.0 else 1.0), drop(R, w)
 
 
 @njit
