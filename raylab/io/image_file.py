@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import importlib.metadata
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,6 +14,7 @@ import numpy.typing as npt
 
 from raylab.errors import UserError
 from raylab.io.atomic import replacing
+from raylab.jit import cache_folder
 
 Array = npt.NDArray[np.float64]
 MAGENTA = np.array([1.0, 0.0, 1.0])
@@ -33,13 +37,28 @@ def decode_srgb(encoded: npt.ArrayLike) -> Array:
 
 def encode_srgb(rgb: npt.ArrayLike) -> npt.NDArray[np.uint8]:
     """Bytes for linear (..., 3): clamped to [0, 1], encoded as sRGB, rounded; not finite becomes magenta."""
-    import colour
-
     linear = np.asarray(rgb, dtype=np.float64)
     valid = np.isfinite(linear).all(axis=-1, keepdims=True)
     shown = np.clip(np.where(valid, linear, MAGENTA), 0.0, 1.0)
-    encoded = np.asarray(colour.cctf_encoding(shown, function="sRGB"), dtype=np.float64)
-    return np.floor(255.0 * encoded + 0.5).astype(np.uint8)
+    return np.searchsorted(_byte_steps(), shown, side="right").astype(np.uint8)
+
+
+@functools.cache
+def _byte_steps() -> Array:
+    """(255,) linear values at which the encoded byte goes up, from colour-science's sRGB.
+
+    They are kept in the cache folder: importing colour-science takes longer than rendering a small picture.
+    """
+    kept = cache_folder() / f"srgb-{importlib.metadata.version('colour-science')}.npy"
+    if kept.is_file():
+        steps: Array = np.load(kept)
+        return steps
+    steps = decode_srgb((np.arange(255) + 0.5) / 255.0)
+    with contextlib.suppress(OSError, UserError):  # a read-only home folder: compute them again next time
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(kept) as beside, beside.open("wb") as file:
+            np.save(file, steps)
+    return steps
 
 
 def read_image(path: str | Path, raw: bool = False) -> Array:

@@ -19,7 +19,9 @@ SUFFIXES = (".png", ".exr", ".npz")
 def check(path: Path) -> None:
     """UserError unless `write` knows the suffix of `path` and its folder is there."""
     if path.suffix.lower() not in SUFFIXES:
-        raise UserError(f'cannot write "{path}": expected a name that ends in {", ".join(SUFFIXES[:-1])} or {SUFFIXES[-1]}')
+        raise UserError(
+            f'cannot write "{path}": expected a name that ends in {", ".join(SUFFIXES[:-1])} or {SUFFIXES[-1]}'
+        )
     if not path.parent.is_dir():
         raise UserError(f'cannot write "{path}": there is no folder "{path.parent}"')
 
