@@ -38,16 +38,32 @@ def point_source(x: npt.ArrayLike, n: npt.ArrayLike, y: npt.ArrayLike, intensity
 
 
 def small_area_source(
-    x: npt.ArrayLike, n: npt.ArrayLike, y: npt.ArrayLike, n_y: npt.ArrayLike, area: npt.ArrayLike, radiance: float, f_r: Brdf
+    x: npt.ArrayLike,
+    n: npt.ArrayLike,
+    y: npt.ArrayLike,
+    n_y: npt.ArrayLike,
+    area: npt.ArrayLike,
+    radiance: float,
+    f_r: Brdf,
 ) -> Array:
-    """Step 2, a small area source: L_r = L_s A f_r(v, w) |n_x . w| |n_y . w| / |x - y|^2; it shines on the side of n_y."""
+    """Step 2, a small area source: L_r = L_s A f_r(v, w) |n_x . w| |n_y . w| / |x - y|^2.
+
+    Only the side of n_y shines.
+    """
     w, _ = _unit(np.asarray(y, np.float64) - np.asarray(x, np.float64))
     cos_y = np.maximum(0.0, -(w * np.asarray(n_y, np.float64)).sum(axis=-1))
     return radiance * np.asarray(area) * cos_y * point_source(x, n, y, 1.0, f_r)
 
 
 def parallelogram_source(
-    x: npt.ArrayLike, n: npt.ArrayLike, p: npt.ArrayLike, e1: npt.ArrayLike, e2: npt.ArrayLike, radiance: float, f_r: Brdf, m: int
+    x: npt.ArrayLike,
+    n: npt.ArrayLike,
+    p: npt.ArrayLike,
+    e1: npt.ArrayLike,
+    e2: npt.ArrayLike,
+    radiance: float,
+    f_r: Brdf,
+    m: int,
 ) -> float:
     """Step 3, a bunch of small area sources: m x m equal parts of the parallelogram at the corner p with edges e1, e2.
 
@@ -70,7 +86,9 @@ def directional_source(n: npt.ArrayLike, w: npt.ArrayLike, irradiance: npt.Array
     return np.asarray(irradiance) * _of(f_r, w) * np.maximum(0.0, w @ np.asarray(n, np.float64))
 
 
-def small_angle_source(n: npt.ArrayLike, w: npt.ArrayLike, sigma: npt.ArrayLike, radiance: Radiance, f_r: Brdf) -> Array:
+def small_angle_source(
+    n: npt.ArrayLike, w: npt.ArrayLike, sigma: npt.ArrayLike, radiance: Radiance, f_r: Brdf
+) -> Array:
     """Step 2, a small area at infinity: L_r = L_i sigma f_r(v, w) cos(theta); sigma in sr."""
     return directional_source(n, w, _of(radiance, np.asarray(w, np.float64)) * np.asarray(sigma), f_r)
 
@@ -82,7 +100,9 @@ def environment(n: npt.ArrayLike, radiance: Radiance, f_r: Brdf, m: int) -> floa
     """
     z, phi = (np.arange(m) + 0.5) / m, 2.0 * np.pi * (np.arange(4 * m) + 0.5) / (4 * m)
     r = np.sqrt(1.0 - z * z)
-    local = np.stack([np.outer(r, np.cos(phi)), np.outer(r, np.sin(phi)), np.repeat(z[:, None], 4 * m, axis=1)], axis=-1)
+    local = np.stack(
+        [np.outer(r, np.cos(phi)), np.outer(r, np.sin(phi)), np.repeat(z[:, None], 4 * m, axis=1)], axis=-1
+    )
     w = local @ frame(np.asarray(n, np.float64))
     return float(small_angle_source(n, w, 2.0 * np.pi / (4 * m * m), radiance, f_r).sum())
 

@@ -26,7 +26,9 @@ from raylab.strategies import strategy
 from raylab.surface import INVALID_RAYS, SHADOW_RAYS, TALLIES
 from raylab.view import View
 
-STREAMS = 4  # independent scrambles of a sobol or stratified picture, from which its error is estimated
+# Independent scrambles of a sobol or stratified picture, from which its error is estimated. Each more costs precision
+# (1.3 times the variance of one scramble at 64 samples for two, 1.7 for four; 1.1 and 1.3 at 256), so few at first.
+FEW_STREAMS, STREAMS, FEW_SAMPLES = 2, 4, 512
 MAX_SAMPLES = 1 << 30  # of one stream: Sobol' numbers have 32 bits
 
 
@@ -54,6 +56,7 @@ class Plan:
             return cls(streams, seconds=seconds or float("inf"), relative_error=relative_error or 0.0)
         if spp > MAX_SAMPLES or int(spp) != spp:
             raise UserError(f"spp must be a whole number up to {MAX_SAMPLES}, got {spp}")
+        streams = min(streams, FEW_STREAMS) if spp <= FEW_SAMPLES else streams
         streams = next(r for r in range(streams, 0, -1) if spp % r == 0)
         return cls(streams, samples=int(spp) // streams)
 

@@ -105,16 +105,14 @@ def _seed(seed: int, *key: int) -> int:
 
 
 def _render(result: Study, estimator: Estimator, spp: int, seed: int) -> Image:
-    image = render(
-        result.scene, estimator.shade, sampler=estimator.sampler, spp=spp, seed=seed, threads=result.threads
-    )
+    image = render(result.scene, estimator.shade, sampler=estimator.sampler, spp=spp, seed=seed, threads=result.threads)
     if not image.complete:
         raise KeyboardInterrupt
     return image
 
 
 def _reference(result: Study, shade: str | Callable[..., Any], step: Step) -> Truth:
-    spp = max(1024, 8 * max(result.levels))
+    spp = max(256, 8 * max(result.levels))
     step(0, 1, f"no truth beside the scene: rendering a reference with {spp} samples per pixel")
     return truths.compute(result.scene, shade, spp, _seed(result.seed, REFERENCE), result.threads)
 
@@ -142,13 +140,20 @@ def _measure(result: Study, level: int, n: int, done: int, total: int, step: Ste
 
 
 def _row(
-    e: Estimator, n: int, repeat: int, place: int, seed: int, image: Image, vector: npt.NDArray[np.float64], truth: Truth
+    e: Estimator,
+    n: int,
+    repeat: int,
+    place: int,
+    seed: int,
+    image: Image,
+    vector: npt.NDArray[np.float64],
+    truth: Truth,
 ) -> Row:
     error = float(np.mean((vector - truth.value.ravel()) ** 2))
-    means = tuple(float(m) for m in image.image_mean)
+    red, green, blue = (float(m) for m in image.image_mean)
     rays, seconds = image.report["rays"], image.report["seconds"]["render"]
     return Row(
-        e.label, e.name, e.sampler, n, repeat, place, seed, seconds, error, float("nan"), *means,
+        e.label, e.name, e.sampler, n, repeat, place, seed, seconds, error, float("nan"), red, green, blue,
         rays["camera"], rays["shadow"], image.invalid_samples,
     )  # fmt: skip
 

@@ -17,6 +17,7 @@ from raylab.study.statistics import Estimate, Slope
 from raylab.study.truth import Truth
 
 Array = npt.NDArray[np.float64]
+DEARER = 1.5  # cost of a sample in the shortest renders over that in the longest, from which on it is said
 DISAGREES = 5.0  # standard errors between an estimator's mean and the truth from which on it is said
 
 
@@ -171,6 +172,7 @@ class Study:
                     doubts.setdefault(doubt, []).append(level.spp)
             notes += [f"{e.label}: {d}, at {', '.join(map(str, at))} samples per pixel; do not lean on the interval."
                       for d, at in doubts.items()]  # fmt: skip
+            notes += _fixed_costs(levels)
             for what, slope in (("variance", self.variance_slope(e)), ("RMSE", self.rmse_slope(e))):
                 notes += [f"{e.label}, slope of the {what}: {d}." for d in (slope.doubts if slope else ())]
         invalid = sum(row.invalid_samples for row in self.rows)
@@ -193,7 +195,9 @@ class Study:
             off = np.abs(means.mean(axis=0) - truth)
             worst = float(np.max(off / np.maximum(spread, 1e-12 * np.abs(truth) + 1e-300)))
             if worst > DISAGREES:
-                notes.append(f"{e.label}: its mean is {worst:.0f} standard errors away from the truth; one of them is wrong.")
+                notes.append(
+                    f"{e.label}: its mean is {worst:.0f} standard errors away from the truth; one of them is wrong."
+                )
         return notes
 
     def summary(self) -> str:
@@ -212,3 +216,13 @@ class Study:
         from raylab.study.page import write
 
         return write(self, Path(folder))
+
+
+def _fixed_costs(levels: list[Level]) -> list[str]:
+    """A note when the shortest renders cost much more per sample than the longest."""
+    if len(levels) < 2 or levels[0].seconds.value / levels[0].spp < DEARER * levels[-1].seconds.value / levels[-1].spp:
+        return []
+    return [
+        f"{levels[0].estimator.label}: renders of {levels[0].spp} samples are so short that fixed costs show in "
+        "their time, which makes the slope over time steeper; a larger picture mends that."
+    ]

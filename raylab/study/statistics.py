@@ -20,6 +20,7 @@ Array = npt.NDArray[np.float64]
 
 LEVEL = 0.95
 FEW = 10  # with fewer repeats the scatter itself is hardly known
+OFF_LINE = 0.1  # distance of a point from the fitted line, in the logarithm, from which on it is said
 CROWDED = 0.1  # share of the squared error in one pixel from which on it is said
 
 
@@ -122,7 +123,7 @@ def slope(x: Sequence[float], y: Sequence[Estimate], repeats: int) -> Slope | No
         doubts.append("two points only: whether they lie on a line is unknown")
     if ratio > 1.0:
         error, factor = error * math.sqrt(ratio), quantile(freedom)
-        if ratio > 4.0:
+        if ratio > 4.0 and float(np.max(np.abs(residuals))) > OFF_LINE:
             doubts.append("the points do not lie on a line; the slope is an average")
     return Slope(value, value - factor * error, value + factor * error, tuple(doubts))
 

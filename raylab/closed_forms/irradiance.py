@@ -32,13 +32,17 @@ def clip(polygon: npt.ArrayLike, normal: npt.ArrayLike, offset: npt.ArrayLike = 
     q, g = np.roll(p, -1, axis=-2), np.roll(h, -1, axis=-1)
     crosses = (h >= 0.0) != (g >= 0.0)
     t = np.divide(h, h - g, out=np.zeros_like(h), where=crosses)
-    slots = np.stack([np.broadcast_to(p, h.shape + (3,)), p + (q - p) * t[..., None]], axis=-2)
+    slots = np.stack([np.broadcast_to(p, (*h.shape, 3)), p + (q - p) * t[..., None]], axis=-2)
     filled = np.stack([h >= 0.0, crosses], axis=-1)
     slots, filled = slots.reshape(*h.shape[:-1], -1, 3), filled.reshape(*h.shape[:-1], -1)
     numbers = np.where(filled, np.arange(filled.shape[-1]), -1)
     last = np.maximum(np.maximum.accumulate(numbers, axis=-1), -1)
-    last = np.where(last < 0, numbers.max(axis=-1, keepdims=True), last)  # before the first: the last one, cyclically
-    return np.where(last[..., None] < 0, 0.0, np.take_along_axis(slots, np.maximum(last, 0)[..., None], axis=-2))
+    last = np.where(
+        last < 0, numbers.max(axis=-1, keepdims=True), last
+    )  # before the first: the last one, cyclically
+    return np.where(
+        last[..., None] < 0, 0.0, np.take_along_axis(slots, np.maximum(last, 0)[..., None], axis=-2)
+    )
 
 
 def polygon(
@@ -71,7 +75,9 @@ def polygon(
     return 0.5 * np.abs((ratio * (cross @ n[..., None])[..., 0]).sum(axis=-1))
 
 
-def behind_edge(x: npt.ArrayLike, a: npt.ArrayLike, b: npt.ArrayLike, lit: npt.ArrayLike) -> tuple[Array, Array]:
+def behind_edge(
+    x: npt.ArrayLike, a: npt.ArrayLike, b: npt.ArrayLike, lit: npt.ArrayLike
+) -> tuple[Array, Array]:
     """The half space `keep` of `polygon` for an opaque half plane with the edge a b: the side of the point `lit`."""
     x, a, b = (np.asarray(v, np.float64) for v in (x, a, b))
     normal = np.cross(a - x, b - a)
@@ -132,7 +138,9 @@ def sphere(radius: npt.ArrayLike, distance: npt.ArrayLike, cosine: npt.ArrayLike
     x = sqrt(eta^2 - 1), y = -x c / s, q = sqrt(1 - y^2): E = (c acos y - x s q) / eta^2 + atan(s q / x).
     Source: Lagarde and de Rousiers 2014, "Moving Frostbite to physically based rendering", after Quilez 2006.
     """
-    eta, c = np.broadcast_arrays(np.asarray(distance, np.float64) / radius, np.asarray(cosine, np.float64))
+    eta, c = np.broadcast_arrays(
+        np.asarray(distance, np.float64) / np.asarray(radius, np.float64), np.asarray(cosine, np.float64)
+    )
     s, x = np.sqrt(np.maximum(0.0, (1.0 - c) * (1.0 + c))), np.sqrt((eta - 1.0) * (eta + 1.0))
     y = np.clip(-x * c / np.where(s > 0.0, s, 1.0), -1.0, 1.0)
     q = np.sqrt((1.0 - y) * (1.0 + y))
