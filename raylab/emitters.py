@@ -12,7 +12,7 @@ from raylab import description as d
 from raylab import lights, quadrics
 from raylab.errors import SceneError
 from raylab.geometry import Placement
-from raylab.point import triangle_frame_array
+from raylab.point import plane_table
 from raylab.record import Table
 from raylab.view import View
 
@@ -92,7 +92,8 @@ class AreaLights:
         return self._add(shape, lights.CYLINDER, p=p, e1=a, e2=b, n=c, tilt=[side, 0, 0], area=area)
 
     def _add_flat(self, shape: d.Shape, kind: int, corners: Array, share: float) -> int:
-        n, slack, tilt = triangle_frame_array(corners)
+        row = plane_table(corners[None])[0]
+        n, slack, tilt = row[:3], row[4], row[5:]
         e1, e2 = corners[1] - corners[0], corners[2] - corners[0]
         area = share * float(np.linalg.norm(np.cross(e1, e2)))
         return self._add(shape, kind, p=corners[0], e1=e1, e2=e2, n=n, area=area, slack=slack, tilt=tilt)

@@ -22,6 +22,7 @@ from raylab.emitters import AreaLights, colour, point_table, sun_table
 from raylab.errors import SceneError
 from raylab.geometry import MeshArrays, Placement, QuadricArrays, gather, quadric_box, quadric_row
 from raylab.palette import Palette
+from raylab.point import plane_table
 from raylab.record import Table
 from raylab.sky import make_environment
 from raylab.surface import (
@@ -37,6 +38,7 @@ from raylab.surface import (
     SceneData,
     SmoothNormals,
 )
+from raylab.triangles import CHUNK
 from raylab.vec3 import Vec3
 from raylab.view import View
 
@@ -86,6 +88,17 @@ class _Builder:
             start += len(m.vertices)
         return vertices
 
+    def _planes(self) -> npt.NDArray[np.float64]:
+        """The plane table of all faces, some at a time to bound the memory."""
+        planes, first_face, first_vertex = np.zeros((len(self.faces), 8)), 0, 0
+        for m in self.meshes:
+            own = self.vertices[first_vertex : first_vertex + len(m.vertices)]
+            for start in range(0, len(m.faces), CHUNK):
+                some = m.faces[start : start + CHUNK]
+                planes[first_face + start : first_face + start + len(some)] = plane_table(own[some].astype(np.float64))
+            first_face, first_vertex = first_face + len(m.faces), first_vertex + len(m.vertices)
+        return planes
+
     def _shapes(self) -> npt.NDArray[np.int64]:
         table, first_face, first_vertex = [], 0, 0
         for m in self.meshes:
@@ -119,6 +132,7 @@ class _Builder:
             shapes=View(self.shapes if len(self.shapes) else np.zeros((1, SHAPE_COLUMNS), np.int64)),
             vertices=View(self.vertices),
             faces=View(self.faces),
+            planes=View(self._planes()),
             quadrics=Quadrics(Table(quadrics.Quadric, self.rows), len(self.meshes)) if self.quads else NoQuadrics(),
             normals=self._normals(),
             coordinates=self._coordinates(),

@@ -9,7 +9,7 @@ import numpy as np
 
 from raylab.embree import trace
 from raylab.jit import njit
-from raylab.point import Point, curved_point, facet_point, free_point, triangle_frame
+from raylab.point import Point, curved_point, facet_point, free_point
 from raylab.record import record
 from raylab.vec3 import Vec3, black, cross, dot, length, vec3_at
 from raylab.view import View
@@ -28,6 +28,7 @@ class SceneData(NamedTuple):
     shapes: View  # (n, SHAPE_COLUMNS) int64: meshes first, then quadrics
     vertices: View  # (n, 3) float32
     faces: View  # (n, 3) uint32, numbered within their mesh
+    planes: View  # (n, 8) float64, `raylab.point.plane_table` of the faces
     quadrics: Any  # Quadrics or NoQuadrics
     normals: Any  # SmoothNormals or FlatNormals
     coordinates: Any  # Coordinates or NoCoordinates
@@ -87,14 +88,15 @@ def intersect(scene, o, d, tnear, tfar):
 @njit
 def triangle_hit(scene, shape, primitive, o, d):
     """Plane intersection t = n . (v0 - o) / n . d in float64, and what the vertices carry there."""
-    face, first = scene.shapes[shape, FIRST_FACE] + primitive, scene.shapes[shape, FIRST_VERTEX]
-    i0, i1, i2 = first + scene.faces[face, 0], first + scene.faces[face, 1], first + scene.faces[face, 2]
-    v0, v1, v2 = vec3_at(scene.vertices, i0), vec3_at(scene.vertices, i1), vec3_at(scene.vertices, i2)
-    n, slack, tilt = triangle_frame(v0, v1, v2)
-    p = o + d * (dot(n, v0 - o) / dot(n, d))
+    face = scene.shapes[shape, FIRST_FACE] + primitive
+    n = vec3_at(scene.planes, face)
+    slack, tilt = scene.planes[face, 4], Vec3(scene.planes[face, 5], scene.planes[face, 6], scene.planes[face, 7])
+    p = o + d * ((scene.planes[face, 3] - dot(n, o)) / dot(n, d))
     N, uv = n, (0.0, 0.0)
     if scene.normals.present() or scene.coordinates.present():
-        b = barycentrics(v0, v1, v2, p)
+        first = scene.shapes[shape, FIRST_VERTEX]
+        i0, i1, i2 = first + scene.faces[face, 0], first + scene.faces[face, 1], first + scene.faces[face, 2]
+        b = barycentrics(vec3_at(scene.vertices, i0), vec3_at(scene.vertices, i1), vec3_at(scene.vertices, i2), p)
         if scene.shapes[shape, SMOOTH] != 0:
             N = scene.normals.at(i0, i1, i2, b, n)
         uv = scene.coordinates.at(i0, i1, i2, b, scene.shapes[shape, HAS_UV])

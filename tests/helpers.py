@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
+from itertools import pairwise
 
 import numpy as np
 from numba import config
@@ -42,6 +43,12 @@ def gauss(n, low=0.0, high=1.0):
     return low + (high - low) * (x + 1.0) / 2.0, w * (high - low) / 2.0
 
 
+def composite(n, edges):
+    """The n-point rule in each interval between neighbouring edges: all nodes, all weights."""
+    nodes, weights = zip(*(gauss(n, low, high) for low, high in pairwise(edges)), strict=True)
+    return np.concatenate(nodes), np.concatenate(weights)
+
+
 def around(n, x, y, z):
     """x a + y b + z n for an orthonormal a, b, n of our own making (numpy, by Gram-Schmidt)."""
     n = np.asarray([*n])
@@ -74,11 +81,6 @@ def held(*objects):
     """The references to each object, and how many pieces of memory Python holds, when all garbage is collected."""
     gc.collect()
     return np.array([sys.getrefcount(o) for o in objects] + [sys.getallocatedblocks()])
-
-
-def wide(x):
-    """An integer for compiled code, where numba takes Python's for int64 if it can."""
-    return np.uint64(x) if x >= 0 else np.int64(x)
 
 
 def same_bits(a, b):

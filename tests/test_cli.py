@@ -1,4 +1,4 @@
-"""The command line, as its users run it: in a process of its own."""
+"""The command line: what it prints and writes, how it fails, how it stops."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import raylab
+from raylab import cli
 from raylab.progress import Bar
 from raylab.render import Progress
 
@@ -22,7 +25,8 @@ SCENE = """<scene version="3.0.0">
 <integrator type="direct"/>
 <sensor type="perspective">
   <transform name="to_world"><lookat origin="0,2,4" target="0,0,0" up="0,1,0"/></transform>
-  <film type="hdrfilm"><integer name="width" value="$size"/><integer name="height" value="4"/><rfilter type="box"/></film>
+  <film type="hdrfilm">
+    <integer name="width" value="$size"/><integer name="height" value="4"/><rfilter type="box"/></film>
   <sampler type="independent"><integer name="sample_count" value="2"/></sampler>
 </sensor>
 <shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/></transform></shape>
@@ -48,14 +52,37 @@ def scene(tmp_path) -> Path:
     return path
 
 
-def run(*arguments: object) -> subprocess.CompletedProcess[str]:
+@dataclass
+class Done:
+    """What a command left behind."""
+
+    code: int
+    stdout: str
+    stderr: str
+
+
+@pytest.fixture
+def run(monkeypatch, capsys) -> Callable[..., Done]:
+    """Run the command line in this process, which is fast."""
+
+    def call(*arguments: object) -> Done:
+        monkeypatch.setattr(sys, "argv", ["raylab", *map(str, arguments)])
+        with pytest.raises(SystemExit) as left:
+            cli.main()
+        return Done(left.value.code, *capsys.readouterr())
+
+    return call
+
+
+def run_process(*arguments: object) -> Done:
     command = [*COMMAND, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT, timeout=120, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT, timeout=120, check=False)
+    return Done(done.returncode, done.stdout, done.stderr)
 
 
-def test_json_is_one_object_with_these_keys(scene):
+def test_json_is_one_object_with_these_keys(scene, run):
     done = run("render", scene, "--json", "-D", "size=5", "--seed", 3, "--threads", 1)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.code, done.stderr) == (0, "")
     result = json.loads(done.stdout)
     assert set(result) >= KEYS
     assert (result["shade"], result["sampler"], result["spp"], result["seed"]) == ("direct", "independent", 2, 3)
@@ -72,19 +99,21 @@ def test_json_is_one_object_with_these_keys(scene):
     assert "area lights" not in result["left_out"]["features"]
 
 
-def test_one_sample_has_no_error_and_json_says_null(scene):
+def test_one_sample_has_no_error_and_json_says_null(scene, run):
     result = json.loads(run("render", scene, "--json", "--spp", 1).stdout)
     assert result["standard_error"] == [None, None, None]
     assert result["relative_error"] is None
 
 
-def test_parameters_reach_the_scene(scene):
+def test_parameters_reach_the_scene(scene, run):
     dim, bright = (json.loads(run("render", scene, "--json", "-D", f"radiance={r}").stdout) for r in (1, 4))
     np.testing.assert_allclose(bright["mean"], 4.0 * np.array(dim["mean"]), rtol=8 * np.finfo(float).eps)
 
 
-def test_same_as_from_python(scene):
-    result = json.loads(run("render", scene, "--json", "--spp", 8, "--sampler", "independent", "--shade", "direct").stdout)
+def test_same_as_from_python(scene, run):
+    result = json.loads(
+        run("render", scene, "--json", "--spp", 8, "--sampler", "independent", "--shade", "direct").stdout
+    )
     image = raylab.render(raylab.load(scene), spp=8)
     assert result["mean"] == image.image_mean.tolist()
 
@@ -124,22 +153,17 @@ def test_files_sentences_and_no_module_that_is_not_needed(scene, tmp_path):
         (["--bogus"], "--bogus"),
     ],
 )
-def test_bad_input_is_one_sentence_and_exit_code_2(scene, monkeypatch, capsys, arguments, said):
-    from raylab import cli
-
-    monkeypatch.setattr(sys, "argv", ["raylab", "render", str(scene), *arguments])
-    with pytest.raises(SystemExit) as left:
-        cli.main()
-    out, error = capsys.readouterr()
-    assert (left.value.code, out) == (2, "")
-    assert error.startswith("raylab: error: ")
-    assert error.count("\n") == 1
-    assert said in error
+def test_bad_input_is_one_sentence_and_exit_code_2(scene, run, arguments, said):
+    done = run("render", scene, *arguments)
+    assert (done.code, done.stdout) == (2, "")
+    assert done.stderr.startswith("raylab: error: ")
+    assert done.stderr.count("\n") == 1
+    assert said in done.stderr
 
 
-def test_scene_errors_and_warnings(scene, tmp_path):
-    missing = run("render", tmp_path / "none.xml")
-    assert (missing.returncode, missing.stdout) == (2, "")
+def test_scene_errors_and_warnings(scene, run, tmp_path):
+    missing = run_process("render", tmp_path / "none.xml")
+    assert (missing.code, missing.stdout) == (2, "")
     assert missing.stderr.startswith("raylab: error: ")
     assert "Traceback" not in missing.stderr
     scene.write_text(SCENE.replace('type="direct"', 'type="path"'))
@@ -173,12 +197,12 @@ def test_ctrl_c_keeps_what_is_done(scene, tmp_path):
         assert json.loads(str(arrays["report"]))["complete"] is False
 
 
-def test_shades_lists_those_that_make_sense(scene):
+def test_shades_lists_those_that_make_sense(scene, run):
     lines = run("shades", scene).stdout.splitlines()
     assert [line.split()[0] for line in lines] == ["direct", "area_diffuse", "area"]
 
 
-def test_version_and_help():
+def test_version_and_help(run):
     assert run("--version").stdout == f"raylab {raylab.__version__}\n"
     assert "render" in run("--help").stdout
 

@@ -92,5 +92,7 @@ def test_a_failed_write_leaves_the_old_file(image, tmp_path, monkeypatch):
 
 
 def test_report_is_strict_json():
-    text = picture.plain({"a": np.array([1.0, np.nan]), "b": np.float64(np.inf), "c": (np.int64(2),), "d": np.bool_(True)})
+    text = picture.plain(
+        {"a": np.array([1.0, np.nan]), "b": np.float64(np.inf), "c": (np.int64(2),), "d": np.bool_(True)}
+    )
     assert json.dumps(text, allow_nan=False) == '{"a": [1.0, null], "b": null, "c": [2], "d": true}'

@@ -9,7 +9,7 @@ import pytest
 
 from raylab import description as d
 from raylab.jit import njit
-from raylab.point import triangle_frame, triangle_frame_array
+from raylab.point import plane_table, triangle_frame
 from raylab.render import render
 from raylab.sampling import sample_cos_hemisphere, sample_triangle
 from raylab.scene import Scene
@@ -193,7 +193,8 @@ def test_loader_and_kernel_agree_on_the_offset_terms():
     rng = np.random.default_rng(5)
     for corners in rng.normal(size=(50, 3, 3)):
         n, slack, tilt = triangle_frame(*(Vec3(*c) for c in corners))
-        n_array, slack_array, tilt_array = triangle_frame_array(corners)
+        row = plane_table(corners[None])[0]
+        n_array, slack_array, tilt_array = row[:3], row[4], row[5:]
         np.testing.assert_allclose(tuple(n), n_array, rtol=0, atol=8 * 2.0**-53 * np.abs(corners).max() ** 2 / 1e-3)
         assert slack == pytest.approx(slack_array, rel=1e-12)
         np.testing.assert_allclose(tuple(tilt), tilt_array, rtol=1e-12)
@@ -207,7 +208,8 @@ def test_offset_bound_covers_the_derived_one():
         v[2] = v[0] + (v[1] - v[0]) * rng.random() + (v[2] - v[0]) * 10.0 ** rng.uniform(-3, 0)
         y = rng.dirichlet([1, 1, 1]) @ v
         x = rng.uniform(-1, 1, 3)
-        n, slack, tilt = triangle_frame_array(v)
+        row = plane_table(v[None])[0]
+        n, slack, tilt = row[:3], row[4], row[5:]
         r = np.abs(v - x).max(axis=0)
         edges = [v[1] - v[0], v[2] - v[1], v[0] - v[2]]
         c = np.max([np.roll(np.abs(e), -1) * np.roll(np.abs(f), -2) + np.roll(np.abs(e), -2) * np.roll(np.abs(f), -1)

@@ -1,4 +1,4 @@
-"""Records, views and tables: the same answers compiled and in plain Python, nothing leaked, nothing compiled in vain."""
+"""Records, views, tables: the same answers compiled and in plain Python, no leaks, nothing compiled in vain."""
 
 from __future__ import annotations
 

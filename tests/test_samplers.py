@@ -1,4 +1,4 @@
-"""Samplers: uniform points, exact grids, Sobol' nets in base 2, Owen scrambling, and the variance that theory promises."""
+"""Samplers: uniform points, exact grids, Sobol' nets in base 2, Owen scrambling, the variance of theory."""
 
 from __future__ import annotations
 
@@ -308,4 +308,3 @@ def test_the_variance_of_sobol_falls_like_n_to_the_minus_three():
         assert slope + stats.norm.isf(ALPHA) * error < -2.5, (slope, error)
     else:
         assert slope < -2.0 + 2.0 * error, (slope, error)  # sixteen runs only: clearly better than stratified
-
