@@ -100,7 +100,7 @@ def render_command(
         picture.check(path)
     loaded, load_seconds = _load(scene, parameters)
     if any(path.suffix.lower() == ".png" for path in outputs):
-        threading.Thread(target=_import_colour, daemon=True).start()
+        threading.Thread(target=_prepare_png, daemon=True).start()
     with Bar(progress, seconds, relative_error) as bar:
         image = raylab.render(
             loaded, shade, sampler=sampler, spp=spp, seconds=seconds, relative_error=relative_error,
@@ -154,13 +154,13 @@ def study_command(
 ) -> int:
     """Measure error against run time on SCENE; Ctrl-C keeps what is done."""
     from raylab.progress import StepBar
-    from raylab.study import study
+    from raylab.study import find_truth, study
 
     loaded, _ = _load(scene, parameters)
     with StepBar("study", progress) as step:
         result = study(
             loaded, _names(shades), samplers=_names(samplers), spp=_numbers(spp), repeats=repeats,
-            seed=seed or 0, threads=threads, progress=step,
+            seed=seed or 0, threads=threads, truth=find_truth(loaded, dict(map(_parameter, parameters))), progress=step,
         )  # fmt: skip
     page = result.write(folder)
     click.echo(result.summary())
@@ -212,9 +212,11 @@ def _numbers(text: str) -> list[int]:
         raise UserError(f'--spp: expected whole numbers with commas between them, got "{text}"') from None
 
 
-def _import_colour() -> None:
-    """What a .png needs and takes long to import; meanwhile the picture is compiled and rendered."""
-    import colour  # noqa: F401
+def _prepare_png() -> None:
+    """The first .png needs colour-science, which takes long to import; meanwhile the picture is rendered."""
+    from raylab.io.image_file import encode_srgb
+
+    encode_srgb((0.0, 0.0, 0.0))
 
 
 def _warn_about(image: Image) -> None:

@@ -1,7 +1,7 @@
 """render(scene, shade): passes over the picture, bands of rows over threads, until enough samples are taken.
 
-The samples of each stream are taken in passes 1, 2, 4, 8, ..., so that an Owen-scrambled sequence is complete after
-each pass, the error is known early, and Ctrl-C always leaves a whole picture. What a pixel gets depends on seed,
+The samples of each stream are taken in passes that end at powers of two, so that an Owen-scrambled sequence is
+complete after each, the error is known early, and Ctrl-C always leaves a whole picture. What a pixel gets depends on seed,
 pixel, stream and sample number alone; threads and bands change nothing.
 """
 
@@ -29,6 +29,7 @@ from raylab.view import View
 # Independent scrambles of a sobol or stratified picture, from which its error is estimated. Each more costs precision
 # (1.3 times the variance of one scramble at 64 samples for two, 1.7 for four; 1.1 and 1.3 at 256), so few at first.
 FEW_STREAMS, STREAMS, FEW_SAMPLES = 2, 4, 512
+SHORT = 0.5  # seconds: what can be done in this time is one pass
 MAX_SAMPLES = 1 << 30  # of one stream: Sobol' numbers have 32 bits
 
 
@@ -179,15 +180,18 @@ def _compile(run: _Run) -> None:
 
 
 def _passes(run: _Run) -> Iterator[tuple[int, int]]:
-    """Ranges of samples 0 .. 1, 1 .. 2, 2 .. 4, ..., the last one cut to what the plan allows."""
+    """Ranges of samples, at first 0 .. 1, then up to powers of two; the last one cut to what the plan allows."""
     while run.taken < run.plan.samples:
-        last = min(max(1, 2 * run.taken), run.plan.samples)
-        if run.taken > 0 and run.plan.seconds < float("inf"):
+        last = 1
+        if run.taken > 0:
             rate = run.taken / run.render_seconds
-            affordable = int((run.plan.seconds - run.render_seconds) * rate)
-            if affordable < 1:
-                return
-            last = min(last, run.taken + affordable)
+            last = 1 << max(run.taken.bit_length(), int(rate * SHORT).bit_length() - 1)
+            if run.plan.seconds < float("inf"):
+                affordable = int((run.plan.seconds - run.render_seconds) * rate)
+                if affordable < 1:
+                    return
+                last = min(last, run.taken + affordable)
+        last = min(last, run.plan.samples)
         yield run.taken, last
         run.taken = last
         if run.plan.relative_error > 0.0 and _so_far(run).relative_error <= run.plan.relative_error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from scipy import stats
 
 import raylab
 from raylab.errors import UserError
-from raylab.study import measure, study
+from raylab.image import Image
+from raylab.study import find_truth, measure, study
 from raylab.study import statistics as st
 from raylab.study.look import spread
 from raylab.study.results import COLUMNS
@@ -185,23 +187,39 @@ def test_a_wrong_truth_is_noticed(result, folder):
     assert "standard errors away from the truth" in spoiled.disagreements()[0]
 
 
-def test_truth_beside_the_scene(folder, result):
-    scene = raylab.load(folder / "scene.xml")
-    mean = result.truth.value.mean(axis=(0, 1)).tolist()
+def test_a_closed_form_of_the_mean(folder, result):
+    scene, mean = raylab.load(folder / "scene.xml"), result.truth.value.mean(axis=(0, 1)).tolist()
     (folder / "truth.json").write_text(json.dumps({"mean": mean, "source": "a test"}))
-    closed = study(scene, ["area"], spp=[4], repeats=3, threads=1)
-    assert closed.truth.source == "closed form of the mean of the whole image. a test"
+    closed = study(scene, ["area"], spp=[4], repeats=3, threads=1, truth=find_truth(scene))
+    assert closed.truth.source == "closed form of the mean of the whole image: a test"
     row = closed.rows[0]
     expected = np.mean((np.array([row.mean_r, row.mean_g, row.mean_b]) - mean) ** 2)
     assert row.squared_error == pytest.approx(expected, rel=1e-9)
 
-    np.savez(folder / "reference.npz", mean=result.truth.value, standard_error=result.truth.standard_error)
-    (folder / "truth.json").write_text(json.dumps({"reference": "reference.npz"}))
-    assert study(scene, ["area"], spp=[1], repeats=2, threads=1).truth.source.startswith("reference reference.npz")
-    (folder / "truth.json").write_text("{}")
-    with pytest.raises(UserError, match='must be an object with "mean" or "reference"'):
-        study(scene, ["area"], spp=[1], repeats=2, threads=1)
-    (folder / "truth.json").unlink()
+
+def test_which_truth_beside_the_scene_fits(folder, result):
+    scene, value = raylab.load(folder / "scene.xml"), result.truth.value
+    np.savez(folder / "reference.npz", mean=value, standard_error=result.truth.standard_error)
+    content = {"reference": "reference.npz", "mean": [1.0, 2.0, 3.0], "standard_error": [0.1, 0.1, 0.1], "source": "s"}
+    (folder / "truth.json").write_text(json.dumps(content))
+    assert find_truth(scene).source == "closed form in each pixel, reference.npz: s"
+    assert find_truth(scene, {"width": 4}).of_pixels
+    assert find_truth(scene, {"radiance": 4}) is None
+    np.savez(folder / "reference.npz", mean=np.ones((8, 8, 3)), standard_error=np.zeros((8, 8, 3)))
+    assert find_truth(scene).value.tolist() == [1.0, 2.0, 3.0]
+    np.savez(folder / "reference.npz", mean=np.ones((8, 9, 3)), standard_error=np.zeros((8, 9, 3)))
+    assert find_truth(scene) is None
+    for wrong in ("{}", "[1]", '{"mean": [1, 2]}', '{"reference": "none.npz"}', "{"):
+        (folder / "truth.json").write_text(wrong)
+        with pytest.raises(UserError, match=r"truth\.json|none\.npz"):
+            find_truth(scene)
+
+
+@pytest.mark.parametrize("path", sorted(Path(__file__).parents[1].glob("reference_scenes/*/truth.json")), ids=str)
+def test_truths_of_the_reference_scenes(path):
+    parameters = json.loads(path.read_text())["parameters"]
+    scene = raylab.load(path.parent / "scene.xml", parameters)
+    assert find_truth(scene, parameters).of_pixels
 
 
 def test_ctrl_c_keeps_the_measurements(folder, monkeypatch, tmp_path):
@@ -239,11 +257,25 @@ def test_bad_arguments(folder, named, said):
         study(scene, shades, **named)
 
 
-def test_estimators_of_different_light_are_refused(tmp_path):
+def test_estimators_of_different_light_are_refused(tmp_path, monkeypatch):
     both = SCENE.replace("</scene>", '<emitter type="constant"/></scene>')
     (tmp_path / "scene.xml").write_text(both)
+    scene = raylab.load(tmp_path / "scene.xml")
     with pytest.raises(UserError, match="compute different light"):
-        study(raylab.load(tmp_path / "scene.xml"), ["area", "env_cosine"])
+        study(scene, ["area", "env_cosine"])
+    asked = []
+
+    def reference(result, shade, step):
+        asked.append(shade)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(measure, "_reference", reference)
+    monkeypatch.setattr(
+        measure, "_render", lambda *arguments: Image(*np.zeros((3, 1, 1, 3)), report={"seconds": {"compile": 0.0}})
+    )
+    truth = Truth(np.ones(3), np.zeros(3), "of all light", all_light=True)
+    assert study(scene, ["area"], truth=truth).truth is None
+    assert asked == ["area"]  # a truth of all light does not hold for a part of it, nor would `direct`
 
 
 # --- files --------------------------------------------------------------------------------------------------------

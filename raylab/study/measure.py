@@ -39,8 +39,9 @@ def study(
     """Measure every shade with every sampler at every number of samples, `repeats` times with different seeds.
 
     One block is one repeat of all estimators; their order is reversed in every other block (ABBA), so that a slow
-    spell of the machine meets all of them. Compilation comes before and is not in the times. `truth` is the one
-    beside the scene file by default, else a reference is rendered first. Ctrl-C keeps the measurements so far.
+    spell of the machine meets all of them. Compilation comes before and is not in the times. `truth`, such as
+    `find_truth(scene)`, is what errors are measured against; without one that fits, a reference is rendered first.
+    Ctrl-C keeps the measurements so far.
 
     Raises UserError for names that do not exist or estimators that compute different things.
     """
@@ -54,7 +55,7 @@ def study(
         for e in estimators:
             step(0, 1, f"compiling {e.label}")
             result.compile_seconds[e] = _render(result, e, 1, _seed(seed, REFERENCE, 1, 0)).report["seconds"]["compile"]
-        result.truth = truth or (truths.find(scene) if whole else None)
+        result.truth = truth if whole or not (truth and truth.all_light) else None
         if result.truth is None:
             result.truth = _reference(result, "direct" if whole else estimators[0].shade, step)
         total, done = sum(levels) * repeats * len(estimators), 0
@@ -113,7 +114,7 @@ def _render(result: Study, estimator: Estimator, spp: int, seed: int) -> Image:
 
 def _reference(result: Study, shade: str | Callable[..., Any], step: Step) -> Truth:
     spp = max(256, 8 * max(result.levels))
-    step(0, 1, f"no truth beside the scene: rendering a reference with {spp} samples per pixel")
+    step(0, 1, f"rendering a reference with {spp} samples per pixel")
     return truths.compute(result.scene, shade, spp, _seed(result.seed, REFERENCE), result.threads)
 
 

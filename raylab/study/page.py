@@ -46,7 +46,8 @@ def write(study: Study, folder: Path) -> Path:
 
 def html(study: Study, plots: list[dict[str, str]]) -> str:
     """The text of the page."""
-    camera, scene = study.scene.description.camera, study.scene.description.name
+    camera, path = study.scene.description.camera, study.scene.description.path
+    scene = path.parent.name if path and path.stem == "scene" else study.scene.description.name
     return fill(
         HERE / "page.html",
         title=f"Error against run time: {scene}",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,18 +17,21 @@ from raylab.render import render
 from raylab.scene import Scene
 
 Array = npt.NDArray[np.float64]
+ONLY_SIZE = {"width", "height", "spp"}  # parameters of a scene file that do not change what the picture shows
 
 
 @dataclass(frozen=True, eq=False)
 class Truth:
     """`value`, (3,) for the mean of the whole image or (h, w, 3) for its pixels, and how it is known.
 
-    `standard_error` has the same shape; it is zero for a closed form.
+    `standard_error` has the same shape. `all_light`: it holds for all the light of the scene, so not for estimators
+    that leave out a kind of light.
     """
 
     value: Array
     standard_error: Array
     source: str
+    all_light: bool = False
 
     @property
     def of_pixels(self) -> bool:
@@ -54,41 +57,52 @@ class Truth:
         return float(np.sqrt(2.0 * np.sum(by_pixel**2)) / self.value.size)
 
 
-def find(scene: Scene) -> Truth | None:
-    """The truth in `truth.json` beside the scene file, None if there is none or it has another size."""
+def find(scene: Scene, parameters: Mapping[str, Any] | None = None) -> Truth | None:
+    """The truth in `truth.json` beside the scene file, None if there is none or it does not fit.
+
+    It fits a scene that was loaded with no other `parameters` than its size. Pixels are compared if the reference has
+    as many; else the mean of the whole image, if it is known in closed form and the aspect ratio is the same.
+    Raises UserError for a file that cannot be understood.
+    """
     path = scene.description.path
-    if path is None or not (path.parent / "truth.json").is_file():
+    if path is None or not (path.parent / "truth.json").is_file() or set(parameters or {}) - ONLY_SIZE:
         return None
     return read(path.parent / "truth.json", scene)
 
 
 def read(path: Path, scene: Scene) -> Truth | None:
-    """{"mean": [r, g, b], "source": ...}, else {"reference": "reference.npz", ...}; UserError if neither."""
+    """A truth.json: {"source", "reference": "reference.npz"} and, for a closed form, {"mean", "standard_error"}."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise UserError(f'cannot read the truth "{path}": {error}') from None
-    source = str(content.get("source", "")) if isinstance(content, dict) else ""
-    if isinstance(content, dict) and content.get("mean") is not None:
-        value = np.asarray(content["mean"], np.float64)
-        if value.shape != (3,) or not np.isfinite(value).all():
-            raise UserError(f'"mean" in "{path}" must be three finite numbers, got {content["mean"]}')
-        return Truth(value, np.zeros(3), f"closed form of the mean of the whole image. {source}".strip())
-    if isinstance(content, dict) and "reference" in content:
-        return _read_reference(path.parent / str(content["reference"]), scene, source)
-    raise UserError(f'"{path}" must be an object with "mean" or "reference"')
+    if not isinstance(content, dict) or not {"mean", "reference"} & set(content):
+        raise UserError(f'"{path}" must be an object with "mean" or "reference"')
+    closed, source = "mean" in content, str(content.get("source", ""))
+    aspect = scene.description.camera.width / scene.description.camera.height
+    if "reference" in content:
+        mean, spread = _reference(path.parent / str(content["reference"]))
+        if mean.shape == (scene.description.camera.height, scene.description.camera.width, 3):
+            how = "closed form in each pixel" if closed else "reference"
+            return Truth(mean, spread, f"{how}, {content['reference']}: {source}", all_light=True)
+        closed = closed and abs(aspect * mean.shape[0] / mean.shape[1] - 1.0) < 1e-9
+    if not closed:
+        return None
+    value, spread = (np.asarray(content.get(k, np.zeros(3)), np.float64) for k in ("mean", "standard_error"))
+    if value.shape != (3,) or spread.shape != (3,) or not np.isfinite([value, spread]).all():
+        raise UserError(f'"mean" and "standard_error" in "{path}" must be three finite numbers each')
+    return Truth(value, spread, f"closed form of the mean of the whole image: {source}", all_light=True)
 
 
-def _read_reference(path: Path, scene: Scene, source: str) -> Truth | None:
-    camera = scene.description.camera
+def _reference(path: Path) -> tuple[Array, Array]:
     try:
         with np.load(path, allow_pickle=False) as arrays:
             mean, error = np.asarray(arrays["mean"], float), np.asarray(arrays["standard_error"], float)
     except (OSError, ValueError, KeyError) as problem:
         raise UserError(f'cannot read the reference "{path}": {problem}') from None
-    if mean.shape != (camera.height, camera.width, 3):
-        return None
-    return Truth(mean, np.nan_to_num(error), f"reference {path.name}. {source}".strip())
+    if mean.ndim != 3 or mean.shape[2] != 3 or error.shape != mean.shape or not np.isfinite(mean).all():
+        raise UserError(f'the reference "{path}" must hold a finite mean (h, w, 3) and its standard_error')
+    return mean, np.nan_to_num(error)
 
 
 def compute(
