@@ -145,7 +145,8 @@ def world_mesh(shape: d.Shape, warnings: list[str]) -> MeshArrays:
         normals = normals @ np.linalg.inv(m[:3, :3])
         size = np.linalg.norm(normals, axis=1, keepdims=True)
         normals = np.divide(normals, size, out=np.zeros_like(normals), where=size > 0)
-    inside_out = np.linalg.det(m[:3, :3]) < 0.0 and not isinstance(shape, d.Mesh)
+    # A mirror turns the winding over but not the normals that the shape comes with; faces follow the normals.
+    inside_out = np.linalg.det(m[:3, :3]) < 0.0 and not (isinstance(shape, d.Mesh) and normals is None)
     if shape.flip_normals != inside_out:
         faces = faces[:, ::-1]
     if shape.flip_normals and normals is not None:

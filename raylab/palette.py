@@ -54,6 +54,8 @@ class Palette:
 
     def _colour(self, value: d.Colour, what: str) -> list[float]:
         if isinstance(value, d.Bitmap):
+            if np.ndim(value.pixels) != 3 or min(np.shape(value.pixels)) < 1:
+                raise SceneError(f"{what}: an image must be (h, w, 3), got {np.shape(value.pixels)}")
             reflectance(value.pixels, what)
             self._bitmaps.append(value)
             return [0.0, 0.0, 0.0, len(self._bitmaps) - 1.0]

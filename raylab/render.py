@@ -1,8 +1,8 @@
 """render(scene, shade): passes over the picture, bands of rows over threads, until enough samples are taken.
 
 The samples of each stream are taken in passes that end at powers of two, so that an Owen-scrambled sequence is
-complete after each, the error is known early, and Ctrl-C always leaves a whole picture. What a pixel gets depends on seed,
-pixel, stream and sample number alone; threads and bands change nothing.
+complete after each, the error is known early, and Ctrl-C always leaves a whole picture. What a pixel gets depends on
+seed, pixel, stream and sample number alone; threads and bands change nothing.
 """
 
 from __future__ import annotations

@@ -189,9 +189,7 @@ def board() -> Array:
     y, x = np.mgrid[0:n, 0:n] / n
     grain = 0.0
     for k, (a, b, c) in enumerate([(3.0, 61.0, 0.3), (5.0, 97.0, 1.7), (2.0, 23.0, 4.1), (9.0, 181.0, 2.2)]):
-        grain = grain + np.sin(2.0 * np.pi * (b * y + 0.35 * np.sin(2.0 * np.pi * (a * x + c)) + c)) / (
-            k + 2.0
-        )
+        grain = grain + np.sin(2.0 * np.pi * (b * y + 0.35 * np.sin(2.0 * np.pi * (a * x + c)) + c)) / (k + 2.0)
     grain = 1.0 + 0.07 * grain
     cell = (n - 2 * rim) // 8
     i = (np.arange(n) - rim) // cell

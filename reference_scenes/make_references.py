@@ -98,14 +98,10 @@ def make(name: str) -> None:
     truth: dict[str, object] = {"reference": "reference.npz", "parameters": parameters}
     if form:
         truth["mean"] = [float(v) for v in mean.mean(axis=(0, 1))]
-        truth["standard_error"] = [
-            float(v) for v in np.sqrt((error**2).sum(axis=(0, 1))) / error[..., 0].size
-        ]
+        truth["standard_error"] = [float(v) for v in np.sqrt((error**2).sum(axis=(0, 1))) / error[..., 0].size]
         truth["source"] = str(form.__doc__).splitlines()[0]
     else:
-        truth["source"] = (
-            f"{PICTURES} renders of {SAMPLES} samples a pixel: make_references.py --scene {name}"
-        )
+        truth["source"] = f"{PICTURES} renders of {SAMPLES} samples a pixel: make_references.py --scene {name}"
     with replacing(HERE / name / "truth.json") as path:
         path.write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
     relative = np.sqrt((error**2).mean()) / mean.mean()

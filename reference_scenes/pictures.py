@@ -45,9 +45,7 @@ def ball(o: Array, d: Array, centre: Array, radius: float) -> tuple[Array, Array
     room = b * b - a * c
     t = np.where(room >= 0.0, (-b - np.sqrt(np.maximum(room, 0.0))) / a, np.inf)
     t = np.where(t > 0.0, t, np.inf)
-    points = np.where(
-        np.isfinite(t)[:, None], o + np.where(np.isfinite(t), t, 0.0)[:, None] * d, centre + radius * UP
-    )
+    points = np.where(np.isfinite(t)[:, None], o + np.where(np.isfinite(t), t, 0.0)[:, None] * d, centre + radius * UP)
     return t, (points - centre) / radius
 
 
@@ -137,9 +135,7 @@ def ball_under_sky(o: Array, d: Array) -> Array:
     on_sheet = ~on_ball & np.isfinite(to_sheet) & (np.abs(x[:, 0]) <= 3.0) & (np.abs(x[:, 2]) <= 3.0)
     result = np.broadcast_to(sky, x.shape).copy()
     distance = np.linalg.norm(centre - x[on_sheet], axis=1)
-    result[on_sheet] = reflected(
-        forms.sphere_before_sky(1.0, distance, 1.0 / distance), [0.88, 0.84, 0.76], sky
-    )
+    result[on_sheet] = reflected(forms.sphere_before_sky(1.0, distance, 1.0 / distance), [0.88, 0.84, 0.76], sky)
     hidden = forms.polygon(sheet, centre + n[on_ball], n[on_ball])
     result[on_ball] = reflected(np.pi - hidden, [0.85, 0.32, 0.15], sky)
     return result

@@ -59,9 +59,7 @@ POSE = affine(rotation(N, 77.0), (5.0, -3.0, 2.0))
 def mesh(*corners, radiance=None, **more):
     """A fan over the corners; the side from which they run counterclockwise is the front."""
     faces = np.array([[0, i, i + 1] for i in range(1, len(corners) - 1)])
-    return d.Mesh(
-        vertices=np.array(corners, np.float64), faces=faces, radiance=radiance, **{"front": None, **more}
-    )
+    return d.Mesh(vertices=np.array(corners, np.float64), faces=faces, radiance=radiance, **{"front": None, **more})
 
 
 def square(centre, n, half=(1.0, 1.0), **more):
@@ -78,15 +76,11 @@ def rectangle(corners, radiance):
 
 
 def sphere(centre, radius, radiance=None, **more):
-    return d.Sphere(
-        center=np.asarray(centre, np.float64), radius=radius, radiance=radiance, **{"front": None, **more}
-    )
+    return d.Sphere(center=np.asarray(centre, np.float64), radius=radius, radiance=radiance, **{"front": None, **more})
 
 
 def disk(centre, n, radius, radiance):
-    return d.Disk(
-        to_world=affine(frame(np.asarray(n, np.float64)).T * radius, centre), radiance=radiance, front=None
-    )
+    return d.Disk(to_world=affine(frame(np.asarray(n, np.float64)).T * radius, centre), radiance=radiance, front=None)
 
 
 def scene(shapes, material=None, n=Z, view=None, lights=(), environment=None):
@@ -101,9 +95,7 @@ def scene(shapes, material=None, n=Z, view=None, lights=(), environment=None):
     )
     moved = tuple(replace(shape, to_world=POSE @ shape.to_world) for shape in (receiver, *shapes))
     return raylab.Scene(
-        d.SceneDescription(
-            camera=camera, shapes=moved, lights=lights, environment=environment, sampler="independent"
-        )
+        d.SceneDescription(camera=camera, shapes=moved, lights=lights, environment=environment, sampler="independent")
     )
 
 
@@ -139,9 +131,7 @@ def check(image, truth, variance=None):
     assert image.invalid_rays == 0
     assert count == SAMPLES
     deviation = np.abs(mean - truth)
-    assert np.all(deviation <= SIGMAS * error + GEOMETRY * truth), (
-        f"mean {mean}, truth {truth}, standard error {error}"
-    )
+    assert np.all(deviation <= SIGMAS * error + GEOMETRY * truth), f"mean {mean}, truth {truth}, standard error {error}"
 
 
 def check_variance(image, variance, mean, largest):
@@ -152,9 +142,7 @@ def check_variance(image, variance, mean, largest):
     kurtosis = max(largest - mean, mean) ** 2 / variance
     measured = image.standard_error[0, 0, 0] ** 2 * SAMPLES
     allowed = SIGMAS * math.sqrt((kurtosis - 1.0) / SAMPLES) + 2.0 * GEOMETRY
-    assert abs(measured / variance - 1.0) <= allowed, (
-        f"variance {measured}, exact {variance}, allowed {allowed:.2%}"
-    )
+    assert abs(measured / variance - 1.0) <= allowed, f"variance {measured}, exact {variance}, allowed {allowed:.2%}"
 
 
 def render(scene, shade, seed=1):
@@ -221,9 +209,7 @@ def test_area_lights(case, shade):
 def test_the_walls_of_a_luminous_room(room):
     """Inside a closed room of radiance L a surface reflects rho L, and the walls shine with L (1 + rho)."""
     if room == "cube":
-        wall = d.Cube(
-            to_world=affine(np.eye(3), (0.1, 0.2, 0.3)), flip_normals=True, radiance=LIGHT, front=None
-        )
+        wall = d.Cube(to_world=affine(np.eye(3), (0.1, 0.2, 0.3)), flip_normals=True, radiance=LIGHT, front=None)
     else:
         wall = sphere((0.1, 0.2, 0.3), 1.5, LIGHT, flip_normals=True)
     check(render(lit([wall], n=N), "area"), RHO * LIGHT)
@@ -333,9 +319,7 @@ def test_ball_before_a_constant_sky(shade):
 @pytest.mark.parametrize("shade", SKIES)
 def test_gradient_sky(shade):
     a = np.array([1.1, 1.0, 0.5])
-    truth = (
-        RHO / math.pi * np.array([forms.gradient_sky(c, row, N) for c, row in zip(a, GRADIENT, strict=True)])
-    )
+    truth = RHO / math.pi * np.array([forms.gradient_sky(c, row, N) for c, row in zip(a, GRADIENT, strict=True)])
     check(render(sky_scene(gradient(a, GRADIENT), n=N), shade), truth)
 
 
@@ -456,9 +440,7 @@ def test_variance_of_a_lobe_of_exponent_20(shade):
 def agree(scene, first, second):
     a, b = render(scene, first, seed=3), render(scene, second, seed=4)
     error = np.hypot(a.standard_error, b.standard_error)
-    assert np.all(np.abs(a.mean - b.mean) <= SIGMAS * error), (
-        f"{first}: {a.mean}, {second}: {b.mean}, +- {error}"
-    )
+    assert np.all(np.abs(a.mean - b.mean) <= SIGMAS * error), f"{first}: {a.mean}, {second}: {b.mean}, +- {error}"
 
 
 @pytest.mark.parametrize("shade", SKIES[1:])

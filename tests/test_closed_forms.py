@@ -160,9 +160,7 @@ def test_skies_are_integrals_over_the_hemisphere():
 
     assert agrees(forms.constant_sky(), over_cone(half, lambda t, phi: math.cos(t)))
     assert agrees(float(forms.gradient_sky(1.1, b, N)), over_cone(half, gradient))
-    assert agrees(
-        forms.overcast_sky(), over_cone(half, lambda t, phi: (1.0 + 2.0 * math.cos(t)) / 3.0 * math.cos(t))
-    )
+    assert agrees(forms.overcast_sky(), over_cone(half, lambda t, phi: (1.0 + 2.0 * math.cos(t)) / 3.0 * math.cos(t)))
     assert agrees(forms.cap_sky(0.4), over_cone(0.4, lambda t, phi: math.cos(t)))
 
 
@@ -195,18 +193,10 @@ def test_lune_moments_are_integrals_around_the_mirror_direction(n, cosine):
             return weight(z) * math.cos(t) ** n * math.sin(t)
 
         def reach(t):  # where N . w = 0; symmetric in phi
-            return (
-                math.acos(max(-1.0, -cosine / (sine * math.tan(t))))
-                if sine * math.tan(t) > cosine
-                else math.pi
-            )
+            return math.acos(max(-1.0, -cosine / (sine * math.tan(t)))) if sine * math.tan(t) > cosine else math.pi
 
         edge = math.pi / 2.0 - math.acos(cosine)
-        parts = [
-            integrate.dblquad(element, a, b, 0.0, reach)
-            for a, b in ((0.0, edge), (edge, math.pi / 2.0))
-            if b > a
-        ]
+        parts = [integrate.dblquad(element, a, b, 0.0, reach) for a, b in ((0.0, edge), (edge, math.pi / 2.0)) if b > a]
         return 2.0 * sum(p[0] for p in parts), 2.0 * sum(p[1] for p in parts) + 1e-8
 
     single, double = phong.lune_moments(n, cosine)
@@ -246,15 +236,10 @@ def test_sums_over_a_light_converge_to_the_integral():
     """Step 3 with m x m parts: the error falls with 1/m^2, so that doubling m quarters it."""
     exact = float(forms.polygon(CENTRED))
     corner, e1, e2 = (-1.0, -0.5, 1.0), (0.0, 1.0, 0.0), (2.0, 0.0, 0.0)
-    errors = [
-        quadrature.parallelogram_source((0, 0, 0), Z, corner, e1, e2, 1.0, 1.0, m) - exact
-        for m in (16, 32, 64)
-    ]
+    errors = [quadrature.parallelogram_source((0, 0, 0), Z, corner, e1, e2, 1.0, 1.0, m) - exact for m in (16, 32, 64)]
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.01)
     assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.01)
-    assert (
-        quadrature.parallelogram_source((0, 0, 0), Z, corner, e2, e1, 1.0, 1.0, 4) == 0.0
-    )  # it shines upwards
+    assert quadrature.parallelogram_source((0, 0, 0), Z, corner, e2, e1, 1.0, 1.0, 4) == 0.0  # it shines upwards
 
 
 def test_sums_over_directions_converge_to_the_integral():
@@ -275,15 +260,11 @@ def test_sums_take_any_brdf():
 
 def test_steps_1_and_2():
     """I k_d cos / r^2 with I = 5 at (1, 2, 2), k_d = 0.4; I k_d cos with I = 3 from (0.6, 0, 0.8)."""
-    assert quadrature.point_source((0, 0, 0), Z, (1.0, 2.0, 2.0), 5.0, 0.4) == pytest.approx(
-        4.0 / 27.0, rel=1e-15
-    )
+    assert quadrature.point_source((0, 0, 0), Z, (1.0, 2.0, 2.0), 5.0, 0.4) == pytest.approx(4.0 / 27.0, rel=1e-15)
     assert 2.0 * forms.point_light((1.0, 2.0, 2.0)) == pytest.approx(4.0 / 27.0, rel=1e-15)
     assert quadrature.directional_source(Z, (0.6, 0.0, 0.8), 3.0, 0.4) == pytest.approx(0.96, rel=1e-15)
     assert 1.2 * forms.directional_light((0.6, 0.0, 0.8)) == pytest.approx(0.96, rel=1e-15)
-    assert quadrature.small_angle_source(Z, (0.6, 0.0, 0.8), 0.01, 3.0, 0.4) == pytest.approx(
-        0.0096, rel=1e-15
-    )
+    assert quadrature.small_angle_source(Z, (0.6, 0.0, 0.8), 0.01, 3.0, 0.4) == pytest.approx(0.0096, rel=1e-15)
     facing = quadrature.small_area_source((0, 0, 0), Z, (0.0, 0.0, 2.0), (0.0, 0.0, -1.0), 0.01, 3.0, 0.4)
     assert facing == pytest.approx(0.003, rel=1e-15)
 

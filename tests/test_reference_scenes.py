@@ -67,9 +67,7 @@ def test_a_scene_is_complete(name):
         assert np.all(np.isfinite(arrays[key]) & (arrays[key] >= 0.0))
     assert arrays["samples"] == int(arrays["samples"]) > 0
     if "mean" in told:
-        np.testing.assert_allclose(
-            arrays["mean"].mean(axis=(0, 1)), told["mean"], rtol=2.0**-23
-        )  # kept as float32
+        np.testing.assert_allclose(arrays["mean"].mean(axis=(0, 1)), told["mean"], rtol=2.0**-23)  # kept as float32
     readme = (FOLDER / name / "README.md").read_text(encoding="utf-8")
     for file in files - {"README.md"}:
         assert file in readme, f"{file} is not explained"
@@ -79,8 +77,7 @@ def test_a_scene_is_complete(name):
 def test_the_scene_file_itself_is_a_picture_of_the_same_shape(name):
     """Without parameters: as large as a lecture needs, and of the same sides."""
     picture, small = (
-        raylab.load(FOLDER / name / "scene.xml", p).description.camera
-        for p in ({}, truth(name)["parameters"])
+        raylab.load(FOLDER / name / "scene.xml", p).description.camera for p in ({}, truth(name)["parameters"])
     )
     assert picture.width * small.height == picture.height * small.width
     if name in PICTURES:
@@ -112,9 +109,7 @@ def test_a_picture_agrees_with_its_reference(name):
     deviation, error = np.abs(difference.sum(axis=(0, 1))), np.sqrt(variance.sum(axis=(0, 1)))
     assert np.all(deviation <= SIGMAS * error), f"off by {deviation / error} standard errors"
     sums, spread, light = tiles(difference), tiles(variance), tiles(known["mean"])
-    sharp = (
-        spread <= (2.0**-20 * light) ** 2
-    )  # known better than float32 keeps it: the sky, a light, the dark
+    sharp = spread <= (2.0**-20 * light) ** 2  # known better than float32 keeps it: the sky, a light, the dark
     np.testing.assert_allclose(sums[sharp], 0.0, atol=2.0**-20 * light.max())
     chi_square = np.where(sharp, 0.0, sums**2 / np.where(sharp, 1.0, spread)).sum(axis=0)
     p = stats.chi2.sf(chi_square, (~sharp).sum(axis=0))
@@ -132,9 +127,7 @@ def test_cs667_number(name):
     }[name]
     scene, exact = load(name), truth(name)["mean"]
     assert np.round(exact, 6) == pytest.approx([number] * 3, abs=1e-12)
-    means = np.array(
-        [raylab.render(scene, sampler="sobol", spp=16384, seed=seed).image_mean for seed in range(16)]
-    )
+    means = np.array([raylab.render(scene, sampler="sobol", spp=16384, seed=seed).image_mean for seed in range(16)])
     error = means.std(axis=0, ddof=1) / math.sqrt(len(means))
     assert np.all(error <= 1e-4 * number)
     assert np.all(np.abs(means.mean(axis=0) - exact) <= 4.0 * error)
@@ -149,9 +142,7 @@ def test_lights_of_the_soft_shadows_have_one_power():
     for size, radiance in ((0.05, 8000), (0.25, 320), (0.5, 80), (1, 20)):
         assert f"{size} and {radiance}" in text
         lamp = next(
-            s
-            for s in load("soft_shadows", size=size, radiance=radiance).description.shapes
-            if s.radiance is not None
+            s for s in load("soft_shadows", size=size, radiance=radiance).description.shapes if s.radiance is not None
         )
         area = 4.0 * np.linalg.norm(lamp.to_world[:3, 0]) * np.linalg.norm(lamp.to_world[:3, 1])
         np.testing.assert_allclose(area * lamp.radiance, 80.0, rtol=1e-12)
@@ -194,6 +185,4 @@ def test_assets_are_what_the_script_makes(scripts, tmp_path, monkeypatch, capsys
             for a, b in zip(read_mesh(tmp_path / file), read_mesh(FOLDER / file), strict=True):
                 assert (a is None and b is None) or np.allclose(a, b, rtol=0.0, atol=1e-6)
         else:
-            np.testing.assert_allclose(
-                read_image(tmp_path / file), read_image(FOLDER / file), rtol=1e-6, atol=1e-2
-            )
+            np.testing.assert_allclose(read_image(tmp_path / file), read_image(FOLDER / file), rtol=1e-6, atol=1e-2)

@@ -37,12 +37,8 @@ def clip(polygon: npt.ArrayLike, normal: npt.ArrayLike, offset: npt.ArrayLike = 
     slots, filled = slots.reshape(*h.shape[:-1], -1, 3), filled.reshape(*h.shape[:-1], -1)
     numbers = np.where(filled, np.arange(filled.shape[-1]), -1)
     last = np.maximum(np.maximum.accumulate(numbers, axis=-1), -1)
-    last = np.where(
-        last < 0, numbers.max(axis=-1, keepdims=True), last
-    )  # before the first: the last one, cyclically
-    return np.where(
-        last[..., None] < 0, 0.0, np.take_along_axis(slots, np.maximum(last, 0)[..., None], axis=-2)
-    )
+    last = np.where(last < 0, numbers.max(axis=-1, keepdims=True), last)  # before the first: the last one, cyclically
+    return np.where(last[..., None] < 0, 0.0, np.take_along_axis(slots, np.maximum(last, 0)[..., None], axis=-2))
 
 
 def polygon(
@@ -75,9 +71,7 @@ def polygon(
     return 0.5 * np.abs((ratio * (cross @ n[..., None])[..., 0]).sum(axis=-1))
 
 
-def behind_edge(
-    x: npt.ArrayLike, a: npt.ArrayLike, b: npt.ArrayLike, lit: npt.ArrayLike
-) -> tuple[Array, Array]:
+def behind_edge(x: npt.ArrayLike, a: npt.ArrayLike, b: npt.ArrayLike, lit: npt.ArrayLike) -> tuple[Array, Array]:
     """The half space `keep` of `polygon` for an opaque half plane with the edge a b: the side of the point `lit`."""
     x, a, b = (np.asarray(v, np.float64) for v in (x, a, b))
     normal = np.cross(a - x, b - a)

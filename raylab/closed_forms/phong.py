@@ -60,9 +60,7 @@ def gradient_sky(n: int, a: float, b: float) -> float:
 # --- a polygon ---
 
 
-def polygon_moments(
-    vertices: npt.ArrayLike, n: int, r: npt.ArrayLike, v: npt.ArrayLike = UP
-) -> tuple[float, float]:
+def polygon_moments(vertices: npt.ArrayLike, n: int, r: npt.ArrayLike, v: npt.ArrayLike = UP) -> tuple[float, float]:
     """tau_n and tau_{n,1} of the convex polygon (k, 3) seen from the origin, clipped by r . w > 0 and v . w > 0.
 
     With u on the boundary, nu its outward normals, tau_{-1} = 0 and tau_0 the solid angle:
@@ -77,9 +75,7 @@ def polygon_moments(
     if np.linalg.det(p[:3]) < 0.0:
         p = p[::-1]  # counterclockwise, so that the outward normals are known
     edges = [_edge(a, b, n, r, v) for a, b in zip(p, np.roll(p, -1, axis=0), strict=True)]
-    boundary = np.sum(
-        [e[0] for e in edges], axis=0
-    )  # oint (r . u)^{k-1} (r . nu), k = 0 .. n; entry 0 unused
+    boundary = np.sum([e[0] for e in edges], axis=0)  # oint (r . u)^{k-1} (r . nu), k = 0 .. n; entry 0 unused
     weighted = np.sum([e[1] for e in edges], axis=0)
     single = [_solid_angle(p), -boundary[1] / 2.0 if n else 0.0]
     double = [0.5 * sum(e[2] for e in edges), 0.0]
