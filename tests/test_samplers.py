@@ -252,6 +252,14 @@ def test_the_two_halves_of_a_stream_are_scrambled_independently():
     assert chi_square_p(counts, np.full(side**2, n / side**2)) > ALPHA
 
 
+def test_blocks_of_dimensions_are_shuffled_apart():
+    """Dimensions 0 and 4 are one sequence. Of 8 x 8 cells, 64 points in step would fill 8, at random 43.5."""
+    p = points("sobol", np.tile(np.arange(64, 128), 20), pairs=3, pixel=np.repeat(np.arange(20), 64))
+    cell = np.floor(p[:, ::2, 0] * 8).reshape(20, 64, 2)
+    filled = [len(np.unique(pixel, axis=0)) for pixel in cell]
+    assert min(filled) > 32
+
+
 @pytest.mark.parametrize("bits", [1, 3, 6])
 def test_the_shuffle_of_points_keeps_every_dyadic_range(bits):
     for seed in (1, 2**32 + 5):

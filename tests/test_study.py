@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import json
 import re
 from pathlib import Path
@@ -14,9 +15,9 @@ from scipy import stats
 import raylab
 from raylab.errors import UserError
 from raylab.image import Image
-from raylab.study import find_truth, measure, study
+from raylab.study import find_truth, measure, plots, study
 from raylab.study import statistics as st
-from raylab.study.look import spread
+from raylab.study.look import figure, spread
 from raylab.study.results import COLUMNS
 from raylab.study.statistics import Estimate
 from raylab.study.truth import Truth
@@ -299,3 +300,27 @@ def test_files(result, tmp_path):
 def test_the_page_escapes_what_users_write(result, monkeypatch, tmp_path):
     monkeypatch.setattr(result, "truth", Truth(result.truth.value, result.truth.standard_error, "<b>bold</b>"))
     assert "&lt;b&gt;bold&lt;/b&gt;" in result.write(tmp_path).read_text()
+
+
+def changed(result, **fields):
+    """The same study with other measurements."""
+    rows = [dataclasses.replace(row, **fields) for row in result.rows]
+    return dataclasses.replace(result, rows=rows)
+
+
+def test_equal_times_are_drawn(result):
+    """An axis of no length would have ticks without end."""
+    same = changed(result, seconds=1e-4)
+    for drawing in (plots.error_time, plots.efficiency):
+        with figure() as (drawn, axes):
+            drawing(same, axes)
+            drawn.draw_without_rendering()
+            assert axes.get_xlim()[1] > 1.5 * axes.get_xlim()[0]
+            assert len(axes.xaxis.get_minorticklocs()) < 100
+
+
+def test_no_variance_at_all_is_drawn_and_said(result, tmp_path):
+    still = changed(result, deviation=0.0, squared_error=0.0)
+    text = still.write(tmp_path).read_text()
+    assert "inf" in text
+    assert still.variance_slope(still.estimators[0]) is None

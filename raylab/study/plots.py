@@ -61,31 +61,28 @@ def error_time(study: Study, axes: Any) -> None:
 def efficiency(study: Study, axes: Any) -> None:
     """How many times as efficient as the first estimator each one is, with 95 % intervals."""
     estimators = study.estimators if study.common_level else []
+    ends = [1.0]
     for place, e in enumerate(estimators):
         ratio, colour = study.relative_efficiency(e), colour_of(study, e)
-        error = [[ratio.value - ratio.low], [min(ratio.high, 1e3 * ratio.value) - ratio.value]]
-        axes.errorbar(ratio.value, place, xerr=None if place == 0 else error, color=colour, marker=MARKERS[e.sampler],
-                      markersize=13, capsize=7, elinewidth=3, capthick=2)  # fmt: skip
-        axes.annotate(
-            f"{readable(ratio.value)}{TIMES}",
-            (ratio.value, place),
-            (0, 14),
-            textcoords="offset points",
-            ha="center",
-            color=colour,
-        )
+        if not np.isfinite(ratio.value):  # the variance of one of the two is zero
+            continue
+        low, high = max(ratio.low, 1e-2 * ratio.value), min(ratio.high, 1e2 * ratio.value)
+        if place:
+            axes.plot([low, high], [place, place], color=colour, marker="|", markersize=18, markeredgewidth=3)
+        axes.plot(ratio.value, place, color=colour, marker=MARKERS[e.sampler], markersize=13)
+        text = f"{readable(ratio.value)}{TIMES}"
+        axes.annotate(text, (ratio.value, place), (0, 14), textcoords="offset points", ha="center", color=colour)
+        ends += [low, high] if place else []
     axes.axvline(1.0, color=GREY, linewidth=1.4, linestyle=(0, (6, 4)))
     axes.set_xscale("log")
+    axes.set_xlim(min(ends) / 1.4, max(ends) * 1.4)
+    plain_ticks(axes.xaxis)
     axes.set_yticks(range(len(estimators)), [label_of(study, e) for e in estimators])
     axes.set_ylim(len(estimators) - 0.4, -0.7)
-    axes.margins(x=0.12)
-    plain_ticks(axes.xaxis)
     axes.grid(False, axis="y", which="both")
     at = f" at {study.common_level} samples per pixel" if study.common_level else ""
-    axes.set(
-        title=f"Efficiency{at}",
-        xlabel=f"1 / (variance {TIMES} time), as a multiple of {label_of(study, study.estimators[0])}",
-    )
+    first = label_of(study, study.estimators[0])
+    axes.set(title=f"Efficiency{at}", xlabel=f"1 / (variance {TIMES} time), as a multiple of {first}")
 
 
 def colour_of(study: Study, e: Estimator) -> str:
@@ -137,10 +134,12 @@ def _curves(study: Study, axes: Any, point: Point, slope: Callable[[Estimator], 
 
 
 def _limit(study: Study, axes: Any, point: Point) -> None:
-    """Bands of hardly known points must not squeeze the lines."""
-    values = [y.value for e in study.estimators for y in _points(study, e, point)[1]]
-    if values:
-        axes.set_ylim(min(values) / 4.0, max(values) * 5.0)
+    """Room around all points; bands of hardly known ones must not squeeze the lines, nor equal ones the axes."""
+    both = [_points(study, e, point) for e in study.estimators]
+    x, y = [v for xs, _ in both for v in xs], [v.value for _, ys in both for v in ys]
+    if x:
+        axes.set_xlim(min(x) / 1.35, max(x) * 1.35)
+        axes.set_ylim(min(y) / 4.0, max(y) * 5.0)
 
 
 def _references(study: Study, axes: Any, point: Point, usual: float, better: float) -> None:
