@@ -49,6 +49,12 @@ class Palette:
             raise SceneError(f"phong: exponent must be in [0, 1e9], got {material.exponent}")
         diffuse = self._colour(material.diffuse_reflectance, "phong diffuse_reflectance")
         specular = reflectance(material.specular_reflectance, "phong specular_reflectance")
+        value = material.diffuse_reflectance
+        brightest = value.pixels.max(axis=(0, 1)) if isinstance(value, d.Bitmap) else np.asarray(value)
+        if np.max(brightest + specular) > 1.0 + 1e-9:
+            raise SceneError(
+                f"phong: diffuse and specular reflectance must not add up to more than 1, got {brightest} and {specular}"
+            )
         self.glossy = self.glossy or bool(specular.max() > 0.0)
         return [*diffuse, *specular, float(material.exponent)]
 

@@ -158,7 +158,7 @@ def test_a_phong_that_does_not_shine_is_diffuse():
 def test_textured_materials_look_their_reflectance_up():
     image = pixels(2, 2)
     bitmap, palette = d.Bitmap(image, "nearest"), Palette()
-    numbers = [palette.number(x) for x in (d.Diffuse(), d.Diffuse(bitmap), d.Phong(bitmap, np.full(3, 0.25), 9.0))]
+    numbers = [palette.number(x) for x in (d.Diffuse(), d.Diffuse(bitmap), d.Phong(bitmap, np.full(3, 0.05), 9.0))]
     assert palette.textured
     table = palette.materials()
     for number in numbers[1:]:
@@ -179,12 +179,13 @@ def test_one_number_stands_for_grey():
 
 
 BAD = [
+    (d.Phong(np.full(3, 0.7), np.full(3, 0.4)), "must not add up to more than 1"),
     (d.Diffuse(np.array([0.5, 1.5, 0.5])), r"diffuse reflectance must lie in \[0, 1\], got 1.5"),
     (d.Diffuse(np.array([0.5, -0.1, 0.5])), r"got -0.1"),
     (d.Diffuse(np.array([0.5, np.nan, 0.5])), "got nan"),
     (d.Diffuse(np.ones(4)), r"one number, an RGB triple or an image \(h, w, 3\), got shape \(4,\)"),
     (d.Diffuse(d.Bitmap(np.full((2, 2, 3), 1.01))), r"got 1.01 at \(0, 0, 0\)"),
-    (d.Diffuse(d.Bitmap(np.full((2, 3), 0.5))), r"\(h, w, 3\), got shape \(2, 3\)"),
+    (d.Diffuse(d.Bitmap(np.full((2, 3), 0.5))), r"an image must be \(h, w, 3\), got \(2, 3\)"),
     (d.Phong(specular_reflectance=np.full(3, 2.0)), "phong specular_reflectance"),
     (d.Phong(exponent=-1.0), r"exponent must be in \[0, 1e9\], got -1.0"),
     (d.Phong(exponent=np.nan), "exponent"),
