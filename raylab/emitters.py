@@ -124,9 +124,6 @@ class AreaLights:
             present["mesh"] = lights.MeshShape(View(np.concatenate(self.corners)), View(np.concatenate(self.shares)))
         return Table(lights.AreaLight, rows, lights.Shapes(**present))
 
-    def kinds(self) -> set[str]:
-        return {lights.KINDS[int(row[0])] for row in self.rows}
-
 
 def _reversed(faces: npt.NDArray[np.uint32]) -> bool:
     return bool(faces[0, 0] != 0)
