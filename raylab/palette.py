@@ -53,7 +53,7 @@ class Palette:
         brightest = value.pixels.max(axis=(0, 1)) if isinstance(value, d.Bitmap) else np.asarray(value)
         if np.max(brightest + specular) > 1.0 + 1e-9:
             raise SceneError(
-                f"phong: diffuse and specular reflectance must not add up to more than 1, got {brightest} and {specular}"
+                f"phong: diffuse and specular reflectance add up to more than 1: {brightest} and {specular}"
             )
         self.glossy = self.glossy or bool(specular.max() > 0.0)
         return [*diffuse, *specular, float(material.exponent)]

@@ -179,7 +179,7 @@ def test_one_number_stands_for_grey():
 
 
 BAD = [
-    (d.Phong(np.full(3, 0.7), np.full(3, 0.4)), "must not add up to more than 1"),
+    (d.Phong(np.full(3, 0.7), np.full(3, 0.4)), "add up to more than 1"),
     (d.Diffuse(np.array([0.5, 1.5, 0.5])), r"diffuse reflectance must lie in \[0, 1\], got 1.5"),
     (d.Diffuse(np.array([0.5, -0.1, 0.5])), r"got -0.1"),
     (d.Diffuse(np.array([0.5, np.nan, 0.5])), "got nan"),
