@@ -26,7 +26,7 @@ lint: $(STAMP)  ## ruff and mypy
 	$(BIN)/ruff format --check raylab tests reference_scenes
 	$(BIN)/mypy
 
-crosscheck: $(STAMP)  ## compare with Mitsuba 3, pixel by pixel (installs it; needs an LLVM library, see docs/crosscheck.md)
+crosscheck: $(STAMP)  ## compare with Mitsuba 3, pixel by pixel (installs it)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[crosscheck]"
 	$(BIN)/python -m pytest -m crosscheck
 
