@@ -26,7 +26,7 @@ TABLE = (
     Slide("Soft shadows", (), "picture: reference_scenes/soft_shadows"),
     Slide("Cause of soft shadows (point lights)", ("raylab.shade.point_light",)),
     Slide("Cause of soft shadows (area lights)", ("raylab.shade.area_diffuse",)),
-    Slide("Glossy reflection", (), "picture: reference_scenes/plates"),
+    Slide("Glossy reflection", (), "picture: reference_scenes/veach_plates"),
     Slide("Cause of glossy reflection (smooth surfaces)", (), NOT_YET),
     Slide("Cause of glossy reflection (rough surfaces)", ("raylab.brdf.Phong",)),
     Slide("Depth of field", (), NOT_YET),

@@ -6,6 +6,7 @@ wrapped by `strategy` and compiled afresh.
 
 from __future__ import annotations
 
+import functools
 import inspect
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -69,6 +70,13 @@ _CLASSES = {name: _make(name, function, True) for name, (function, _) in BUILT_I
 globals().update({cls.__name__: cls for cls in _CLASSES.values()})  # where pickle looks for them
 
 
+@functools.lru_cache(maxsize=64)
+def _own(shade: Callable[..., Any]) -> type:
+    """The strategy class of a function, made once, so that its kernel is compiled once."""
+    function = shade if hasattr(shade, "py_func") else njit(shade)
+    return _make(getattr(shade, "__name__", "shade"), function, False)
+
+
 def strategy(shade: str | Callable[..., Any], scene: Scene) -> Any:
     """The record that renders `scene` with a built-in shade() by name or with a function.
 
@@ -76,8 +84,7 @@ def strategy(shade: str | Callable[..., Any], scene: Scene) -> Any:
     """
     hide = scene.description.hide_emitters
     if callable(shade):
-        function = shade if hasattr(shade, "py_func") else njit(shade)
-        return _make(getattr(shade, "__name__", "shade"), function, False)(hide)
+        return _own(shade)(hide)
     if shade not in BUILT_IN:
         raise UserError(f"unknown shade {shade!r}; expected one of {', '.join(NAMES)}")
     needs, diffuse = BUILT_IN[shade][1], shade in ("area_diffuse", "env_uniform", "env_cosine")

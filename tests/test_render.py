@@ -109,6 +109,8 @@ def test_a_shade_of_ones_own():
 
     image = render(room(4), shade, spp=2)
     np.testing.assert_array_equal(image.mean[-1, 0], [1.0, 2.0, 3.0])
+    again = render(room(4), shade, spp=2)  # compiled once, in seconds; looking that up takes milliseconds
+    assert again.report["seconds"]["compile"] < image.report["seconds"]["compile"] / 5
 
 
 def test_invalid_samples_are_counted_and_left_out():

@@ -65,6 +65,13 @@ def test_shades_stand_in_slide_order():
     assert re.findall(r"^def (\w+)\(", source, re.MULTILINE) == order
 
 
+def test_scenes_that_notes_name_exist():
+    root = Path(__file__).parents[1]
+    named = [n for slide in slides.TABLE for n in re.findall(r"reference_scenes/\w+", slide.note)]
+    assert named
+    assert all((root / name).is_dir() for name in named)
+
+
 def test_page_shows_the_table():
     page = Path(__file__).parents[1] / "docs" / "slides.md"
     assert slides.markdown() in page.read_text()
