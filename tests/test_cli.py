@@ -176,7 +176,12 @@ def test_ctrl_c_keeps_what_is_done(scene, tmp_path):
     outputs = [tmp_path / "a.npz", tmp_path / "a.png"]
     arguments = ["render", scene, "--seconds", 100, "--json", "--progress", "-o", outputs[0], "-o", outputs[1]]
     process = subprocess.Popen(
-        [*COMMAND, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT
+        [*COMMAND, *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=ENVIRONMENT,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background ignores Ctrl-C
     )
     assert process.stderr is not None
     seen = ""
