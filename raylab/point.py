@@ -21,7 +21,7 @@ from raylab.jit import njit
 from raylab.record import record
 from raylab.vec3 import Vec3, absolute, black, cross, dot, length
 
-ULPS = 4.0 * 2.0**-24  # the measured threshold is 1 to 1.5 units of 2^-24: a factor of safety of 2.7 at least
+ULPS = 4.0 * 2.0**-24  # experiments needed 1 to 1.5 units of 2^-24; the factor is a margin of safety
 
 
 @record

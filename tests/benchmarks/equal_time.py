@@ -2,7 +2,9 @@
 
     python tests/benchmarks/equal_time.py [--mitsuba-python PYTHON] [--scenes soft_shadows cornell_box]
 
-Both render the same file at the same size, in turn, in one run. Compilation is not counted. The truth is the mean of a
+Both render the same file at the same size in one run, first Mitsuba, then raylab; on a machine with other work the
+ratio means little. Each ratio is a geometric mean over the times at which both have been measured; the lines above it
+give each of them. Compilation is not counted. The truth is the mean of a
 long picture of each, so a systematic difference between the two would hurt both alike. Mitsuba needs an LLVM library:
 set DRJIT_LIBLLVM_PATH where it does not find one.
 """
