@@ -1,7 +1,7 @@
 """What Embree calls when a ray enters the box of a quadric: the float64 intersection of `raylab.quadrics`.
 
-The argument is the address of an RTCIntersectFunctionNArguments or RTCOccludedFunctionNArguments of one ray, which
-agree in layout: valid, user data (our rows), primID, context, ray, N and geomID.
+The argument is the address of an RTCIntersectFunctionNArguments or RTCOccludedFunctionNArguments, which agree in
+layout: valid, user data (our rows), primID, context, rays, N and geomID. Word w of ray i stands at w N + i.
 """
 
 from __future__ import annotations
@@ -21,37 +21,47 @@ from raylab.vec3 import Vec3
 from raylab.view import view_at
 
 _COLUMNS = 14  # of a Quadric row
-_T_FAR, _NORMAL, _PRIMITIVE, _GEOMETRY, _INSTANCE = 8, 12, 17, 18, 19  # words of an RTCRayHit
+_T_FAR, _NORMAL, _PRIMITIVE, _GEOMETRY, _INSTANCE, _WORDS = 8, 12, 17, 18, 19, 20  # words of an RTCRayHit
 
 
 @njit
-def distance(ray, rows, primitive):
-    """Where the ray (words of an RTCRay) meets the quadric; inf for a miss."""
-    o, d = Vec3(ray[0, 0], ray[1, 0], ray[2, 0]), Vec3(ray[4, 0], ray[5, 0], ray[6, 0])
-    return first_hit(quadric_at(rows, primitive), o, d, ray[3, 0], ray[_T_FAR, 0])
+def distance(rays, lane, rows, primitive):
+    """Where a ray (column `lane` of words) meets the quadric; inf for a miss."""
+    o, d = Vec3(rays[0, lane], rays[1, lane], rays[2, lane]), Vec3(rays[4, lane], rays[5, lane], rays[6, lane])
+    return first_hit(quadric_at(rows, primitive), o, d, rays[3, lane], rays[_T_FAR, lane])
 
 
 def intersect(arguments):
-    """Shorten the ray to its first hit and say which primitive that is."""
+    """Shorten each ray to its first hit and say which primitive that is."""
     pointers, integers = view_at(arguments, 6, 1, np.int64), view_at(arguments, 12, 1, np.int32)
-    primitive, geometry = integers[4, 0], integers[11, 0]
-    ray, ids = view_at(pointers[4, 0], 24, 1, np.float32), view_at(pointers[4, 0], 24, 1, np.int32)
-    t = distance(ray, view_at(pointers[1, 0], primitive + 1, _COLUMNS, np.float64), primitive)
-    if t < math.inf:
-        ray[_T_FAR, 0] = np.float32(t)
-        for word in range(_NORMAL, _PRIMITIVE):  # Ng, u and v are recomputed by the caller
-            ray[word, 0] = np.float32(0.0)
-        ids[_PRIMITIVE, 0] = primitive
-        ids[_GEOMETRY, 0] = geometry
-        ids[_INSTANCE, 0] = np.int32(-1)
+    primitive, lanes, geometry = integers[4, 0], integers[10, 0], integers[11, 0]
+    valid, rows = (
+        view_at(pointers[0, 0], lanes, 1, np.int32),
+        view_at(pointers[1, 0], primitive + 1, _COLUMNS, np.float64),
+    )
+    rays, ids = view_at(pointers[4, 0], _WORDS, lanes, np.float32), view_at(pointers[4, 0], _WORDS, lanes, np.int32)
+    for lane in range(lanes):
+        if valid[lane, 0] != 0:
+            t = distance(rays, lane, rows, primitive)
+            if t < math.inf:
+                rays[_T_FAR, lane] = np.float32(t)
+                for word in range(_NORMAL, _PRIMITIVE):  # Ng, u and v are recomputed by the caller
+                    rays[word, lane] = np.float32(0.0)
+                ids[_PRIMITIVE, lane], ids[_GEOMETRY, lane], ids[_INSTANCE, lane] = primitive, geometry, -1
 
 
 def occlude(arguments):
-    """Mark the ray as blocked when it meets the quadric."""
+    """Mark each ray that meets the quadric as blocked."""
     pointers, integers = view_at(arguments, 6, 1, np.int64), view_at(arguments, 12, 1, np.int32)
-    primitive, ray = integers[4, 0], view_at(pointers[4, 0], 12, 1, np.float32)
-    if distance(ray, view_at(pointers[1, 0], primitive + 1, _COLUMNS, np.float64), primitive) < math.inf:
-        ray[_T_FAR, 0] = np.float32(-math.inf)
+    primitive, lanes = integers[4, 0], integers[10, 0]
+    valid, rows = (
+        view_at(pointers[0, 0], lanes, 1, np.int32),
+        view_at(pointers[1, 0], primitive + 1, _COLUMNS, np.float64),
+    )
+    rays = view_at(pointers[4, 0], _NORMAL, lanes, np.float32)
+    for lane in range(lanes):
+        if valid[lane, 0] != 0 and distance(rays, lane, rows, primitive) < math.inf:
+            rays[_T_FAR, lane] = np.float32(-math.inf)
 
 
 @cache

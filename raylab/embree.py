@@ -3,6 +3,9 @@
 The embreex wheel carries Embree's C library. ctypes builds the scene; compiled code calls `rtcIntersect1` and
 `rtcOccluded1` directly. Embree answers *which* primitive and *whether*; where, and with what normal, is recomputed
 in float64 by the caller. Coordinates are the normalised ones of `raylab.scene` (all within [-1, 1]).
+
+Rays go one by one (`trace`, `blocked`) or, when many start alike, in a `Packet` (`trace_packet`, `rtcIntersect16`),
+which costs a third as much.
 """
 
 from __future__ import annotations
@@ -10,7 +13,7 @@ from __future__ import annotations
 import ctypes
 import importlib.metadata
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +25,9 @@ from numba.extending import intrinsic, overload
 
 from raylab.callbacks import quadric_callbacks
 from raylab.jit import OPTIONS
+from raylab.record import record
 from raylab.vec3 import Vec3, Vec3Type
+from raylab.view import View
 
 TNEAR = 2.0**-100  # robust mode counts a hit at t = tnear, so tnear = 0 would meet the surface the ray starts on
 _TRIANGLES, _USER, _INDEX, _VERTEX, _UINT3, _FLOAT3, _ROBUST = 0, 120, 0, 1, 0x5003, 0x9003, 4
@@ -49,6 +54,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "rtcSetGeometryIntersectFunction": (None, [_POINTER, _POINTER]),
     "rtcSetGeometryOccludedFunction": (None, [_POINTER, _POINTER]),
     "rtcIntersect1": (None, [_POINTER, _POINTER, _POINTER]),
+    "rtcIntersect16": (None, [_POINTER, _POINTER, _POINTER, _POINTER]),
     "rtcOccluded1": (None, [_POINTER, _POINTER, _POINTER]),
 }
 
@@ -64,7 +70,7 @@ def library() -> ctypes.CDLL:
     for name, (result, arguments) in _SIGNATURES.items():
         function = getattr(loaded, name)
         function.restype, function.argtypes = result, arguments
-    for name in ("rtcIntersect1", "rtcOccluded1"):
+    for name in ("rtcIntersect1", "rtcIntersect16", "rtcOccluded1"):
         llvm.add_symbol(name, ctypes.cast(getattr(loaded, name), _POINTER).value)
     return loaded
 
@@ -156,9 +162,10 @@ def _word(builder, ray, k, element=_F32):
     return address if element is _F32 else builder.bitcast(address, element.as_pointer())
 
 
-def _call(builder, name, handle, ray):
-    function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(ir.VoidType(), [_I8P] * 3), name)
-    builder.call(function, [builder.inttoptr(handle, _I8P), builder.bitcast(ray, _I8P), ir.Constant(_I8P, None)])
+def _call(builder, name, *pointers):
+    signature = ir.FunctionType(ir.VoidType(), [_I8P] * len(pointers))
+    function = cgutils.get_or_insert_function(builder.module, signature, name)
+    builder.call(function, [builder.bitcast(p, _I8P) for p in pointers])
 
 
 def _components(context, builder, value):
@@ -175,7 +182,7 @@ def _trace(typing_context, handle, o, d, tnear, tfar):
         ray = _new_ray(builder, 24, _components(context, builder, o), _components(context, builder, d), tnear, tfar)
         for k in (17, 18, 19, 20):  # primID, geomID, instID, instPrimID: none
             builder.store(ir.Constant(_I32, -1), _word(builder, ray, k, _I32))
-        _call(builder, "rtcIntersect1", handle, ray)
+        _call(builder, "rtcIntersect1", builder.inttoptr(handle, _I8P), ray, ir.Constant(_I8P, None))
         ids = [builder.sext(builder.load(_word(builder, ray, k, _I32)), _I64) for k in (18, 17)]
         return context.make_tuple(builder, result, ids)
 
@@ -188,7 +195,7 @@ def _blocked(typing_context, handle, o, d, tfar):
         handle, o, d, tfar = arguments
         tnear = ir.Constant(ir.DoubleType(), TNEAR)
         ray = _new_ray(builder, 12, _components(context, builder, o), _components(context, builder, d), tnear, tfar)
-        _call(builder, "rtcOccluded1", handle, ray)
+        _call(builder, "rtcOccluded1", builder.inttoptr(handle, _I8P), ray, ir.Constant(_I8P, None))
         return builder.fcmp_ordered("<", builder.load(_word(builder, ray, 8)), ir.Constant(_F32, 0.0))
 
     return types.boolean(types.uint64, o, d, types.float64), codegen
@@ -226,3 +233,80 @@ def _python_ray(o: Vec3, d: Vec3, tnear: float, tfar: float) -> npt.NDArray[np.f
     words[:9] = [*o, tnear, *d, 0.0, tfar]
     words[9:10].view(np.int32)[0] = -1
     return words
+
+
+# --- packets: an RTCRayHit16, word w of lane i at [w, i] ---
+
+LANES = 16
+_PACKET_WORDS = 24  # of an RTCRayHit, and room to spare
+_COHERENT = np.array([1 << 16, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], np.int32)  # RTCIntersectArguments: flags, features
+
+
+@record
+class Packet(NamedTuple):
+    """LANES rays and their hits, in memory of one thread's own."""
+
+    words: View  # (24, LANES) float32
+    ids: View  # the same memory as int32
+    valid: View  # (LANES,) int32: -1 for a lane in use, 0 for one that is not
+
+    def put(self, lane, o, d, tfar):
+        """Set a lane to the ray o + t d, 0 <= t <= tfar."""
+        self.words[0, lane], self.words[1, lane], self.words[2, lane] = o.x, o.y, o.z
+        self.words[3, lane] = 0.0
+        self.words[4, lane], self.words[5, lane], self.words[6, lane] = d.x, d.y, d.z
+        self.words[7, lane], self.words[8, lane] = 0.0, tfar
+        self.ids[9, lane], self.ids[10, lane], self.ids[11, lane] = -1, 0, 0
+        self.ids[18, lane] = -1
+        self.valid[lane] = -1
+
+    def switch_off(self, lane):
+        """This lane's ray is not traced and meets nothing."""
+        self.ids[18, lane] = -1
+        self.valid[lane] = 0
+
+    def o(self, lane):
+        return Vec3(self.words[0, lane], self.words[1, lane], self.words[2, lane])
+
+    def d(self, lane):
+        return Vec3(self.words[4, lane], self.words[5, lane], self.words[6, lane])
+
+    def hit(self, lane):
+        """(geometry, primitive) that the lane's ray met first; geometry -1 for nothing."""
+        return np.int64(self.ids[18, lane]), np.int64(self.ids[17, lane])
+
+
+def new_packet() -> Packet:
+    """A packet in memory aligned as Embree wants it."""
+    memory = np.zeros((_PACKET_WORDS + 2) * LANES, np.float32)
+    start = (-memory.ctypes.data % 64) // 4
+    words = memory[start : start + _PACKET_WORDS * LANES].reshape(_PACKET_WORDS, LANES)
+    valid = memory[start + _PACKET_WORDS * LANES :][:LANES]
+    return Packet(View(words), View(words.view(np.int32)), View(valid.view(np.int32)))
+
+
+def trace_packet(handle, packet):
+    """Let each lane in use find its first hit: `packet.hit`."""
+    words, valid = packet.words.array, packet.valid.array
+    library().rtcIntersect16(valid.ctypes.data, int(handle), words.ctypes.data, _COHERENT.ctypes.data)
+
+
+@intrinsic
+def _trace_packet(typing_context, handle, words, valid):
+    def codegen(context, builder, signature, arguments):
+        handle, words, valid = arguments
+        memory = [
+            cgutils.create_struct_proxy(t)(context, builder, value=v).data
+            for t, v in zip(signature.args[1:], (words, valid), strict=True)
+        ]
+        content = ir.Constant(ir.ArrayType(_I32, len(_COHERENT)), [int(v) for v in _COHERENT])
+        options = cgutils.global_constant(builder, "raylab_coherent", content)
+        options.align = 16
+        _call(builder, "rtcIntersect16", memory[1], builder.inttoptr(handle, _I8P), memory[0], options)
+
+    return types.void(types.uint64, words, valid), codegen
+
+
+@overload(trace_packet, jit_options=OPTIONS)
+def _overload_trace_packet(handle, packet):
+    return lambda handle, packet: _trace_packet(handle, packet.words, packet.valid)

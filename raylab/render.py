@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from raylab import samplers
+from raylab.embree import LANES, new_packet
 from raylab.errors import UserError
 from raylab.image import Image, estimate, invalid
 from raylab.jit import entry_point
@@ -30,6 +31,7 @@ from raylab.view import View
 # (1.3 times the variance of one scramble at 64 samples for two, 1.7 for four; 1.1 and 1.3 at 256), so few at first.
 FEW_STREAMS, STREAMS, FEW_SAMPLES = 2, 4, 512
 SHORT = 0.5  # seconds: what can be done in this time is one pass
+FIRST_PASS = 1 << 22  # camera rays that the first pass may take over the whole picture
 MAX_SAMPLES = 1 << 30  # of one stream: Sobol' numbers have 32 bits
 
 
@@ -170,7 +172,18 @@ def _arguments(run: _Run, tally: Any, rows: tuple[int, int], samples: tuple[int,
     sampler = samplers.make(run.sampler, run.seed, cells)
     data = run.scene.data._replace(tally=View(tally))
     pixels = view(run.accumulator)
-    return data, run.scene.camera, run.strategy, sampler, pixels, camera.width, camera.height, rows, samples
+    return (
+        data,
+        run.scene.camera,
+        run.strategy,
+        sampler,
+        new_packet(),
+        pixels,
+        camera.width,
+        camera.height,
+        rows,
+        samples,
+    )
 
 
 def _compile(run: _Run) -> None:
@@ -180,12 +193,15 @@ def _compile(run: _Run) -> None:
 
 
 def _passes(run: _Run) -> Iterator[tuple[int, int]]:
-    """Ranges of samples, at first 0 .. 1, then up to powers of two; the last one cut to what the plan allows."""
+    """Ranges of samples that end at powers of two, the last one cut to what the plan allows.
+
+    A pass ends at 1 or at a multiple of LANES, so that which eye rays share a packet does not depend on the clock.
+    """
     while run.taken < run.plan.samples:
-        last = 1
+        last = _first_pass(run)
         if run.taken > 0:
             rate = run.taken / run.render_seconds
-            last = 1 << max(run.taken.bit_length(), int(rate * SHORT).bit_length() - 1)
+            last = max(LANES, 1 << max(run.taken.bit_length(), int(rate * SHORT).bit_length() - 1))
             if run.plan.seconds < float("inf"):
                 affordable = int((run.plan.seconds - run.render_seconds) * rate)
                 if affordable < 1:
@@ -196,6 +212,14 @@ def _passes(run: _Run) -> Iterator[tuple[int, int]]:
         run.taken = last
         if run.plan.relative_error > 0.0 and _so_far(run).relative_error <= run.plan.relative_error:
             return
+
+
+def _first_pass(run: _Run) -> int:
+    """How many samples of each stream to begin with: a packet in a small picture whose number is given, else one."""
+    if run.plan.samples == MAX_SAMPLES:
+        return 1
+    camera = run.scene.description.camera
+    return LANES if LANES * camera.width * camera.height * run.plan.streams <= FIRST_PASS else 1
 
 
 def _so_far(run: _Run) -> Image:

@@ -78,10 +78,14 @@ def intersect(scene, o, d, tnear, tfar):
         scene.tally[INVALID_RAYS] += 1
         return no_hit()
     geometry, primitive = trace(scene.embree, o, d, tnear, tfar)
-    if geometry < 0:
-        return no_hit()
+    return no_hit() if geometry < 0 else hit_of(scene, geometry, primitive, o, d, tnear)
+
+
+@njit
+def hit_of(scene, geometry, primitive, o, d, tnear):
+    """The hit of a ray with the primitive that it is known to meet first."""
     if scene.quadrics.has(geometry):
-        return scene.quadrics.hit(geometry, primitive, o, d, tnear, tfar)
+        return scene.quadrics.hit(geometry, primitive, o, d, tnear)
     return triangle_hit(scene, geometry, primitive, o, d)
 
 
@@ -125,7 +129,7 @@ class NoQuadrics(NamedTuple):
     def has(self, geometry):
         return False
 
-    def hit(self, geometry, primitive, o, d, tnear, tfar):
+    def hit(self, geometry, primitive, o, d, tnear):
         return no_hit()
 
 
@@ -139,9 +143,9 @@ class Quadrics(NamedTuple):
     def has(self, geometry):
         return geometry == self.geometry
 
-    def hit(self, geometry, primitive, o, d, tnear, tfar):
+    def hit(self, geometry, primitive, o, d, tnear):
         quadric = self.table[primitive]
-        t = quadric.distance(o, d, tnear, tfar)
+        t = quadric.distance(o, d, tnear, math.inf)
         p = quadric.snap(o + d * t)
         n = quadric.normal(p)
         front = dot(n, d) < 0.0

@@ -12,7 +12,7 @@ from embreex import rtcore_scene
 from embreex.mesh_construction import TriangleMesh
 
 from raylab import description as d
-from raylab.embree import EmbreeScene, blocked, trace
+from raylab.embree import LANES, EmbreeScene, blocked, new_packet, trace, trace_packet
 from raylab.jit import njit
 from raylab.scene import Scene
 from raylab.surface import INVALID_RAYS, intersect
@@ -47,6 +47,21 @@ def trace_all(handle, origins, directions, found, blocks):
         blocks[i] = blocked(handle, o, direction, math.inf)
 
 
+@njit
+def trace_in_packets(handle, packet, origins, directions, off, found):
+    for first in range(0, len(found), LANES):
+        lanes = min(LANES, len(found) - first)
+        for lane in range(LANES):
+            i = min(first + lane, len(found) - 1)
+            packet.put(lane, vec3_at(origins, i), vec3_at(directions, i), math.inf)
+            if lane >= lanes or off[i] == 1:
+                packet.switch_off(lane)
+        trace_packet(handle, packet)
+        for lane in range(lanes):
+            geometry, primitive = packet.hit(lane)
+            found[first + lane] = primitive if geometry >= 0 else -1
+
+
 def kernel_answers(mesh: trimesh.Trimesh, rays) -> tuple[np.ndarray, np.ndarray]:
     vertices = np.concatenate([mesh.vertices, np.zeros((1, 3))]).astype(np.float32)
     scene = EmbreeScene()
@@ -65,6 +80,23 @@ def test_kernel_agrees_with_embreex(knot, rays):
     assert 0.2 < (expected >= 0).mean() < 0.95  # the test has hits and misses to tell apart
     np.testing.assert_array_equal(found, expected)
     np.testing.assert_array_equal(blocks == 1, expected >= 0)
+
+
+@pytest.mark.parametrize("quadrics", [False, True], ids=["triangles", "with spheres and disks"])
+def test_packets_agree_with_single_rays(knot, rays, quadrics):
+    """Every third lane is switched off and must not be touched; the last packet is not full."""
+    shapes: list[d.Shape] = [d.Mesh(vertices=knot.vertices, faces=knot.faces)]
+    if quadrics:
+        shapes += [d.Sphere(center=np.array([0.5, 0.5, 0.5]), radius=0.6), d.Disk(), d.Cylinder(radius=0.3)]
+    scene = Scene(d.SceneDescription(shapes=tuple(shapes)))
+    handle, some = np.uint64(scene.embree.handle), RAYS - 5
+    single, packed, blocks = np.zeros(some, np.int64), np.zeros(some, np.int64), np.zeros(some, np.int64)
+    off = (np.arange(some) % 3 == 1).astype(np.int64)
+    origins, directions = View(rays[0] / 2), View(rays[1])  # more of them among the shapes
+    trace_all(handle, origins, directions, View(single), View(blocks))
+    trace_in_packets(handle, new_packet(), origins, directions, View(off), View(packed))
+    assert 0.2 < (single >= 0).mean() < 0.95
+    np.testing.assert_array_equal(packed, np.where(off == 1, -1, single))
 
 
 def test_kernel_agrees_with_trimesh(knot, rays):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from scenes import GREY, camera, lamp, moved, outdoors, room
 from scipy import stats
 
 from raylab import description as d
+from raylab.embree import LANES
 from raylab.errors import UserError
 from raylab.image import estimate
 from raylab.pixels import COLUMNS, COUNT
@@ -17,6 +19,8 @@ from raylab.render import STREAMS, render
 from raylab.scene import Scene
 from raylab.strategies import strategy
 from raylab.vec3 import Vec3
+
+render_module = sys.modules["raylab.render"]  # raylab.render is the function
 
 
 @pytest.mark.parametrize("sampler", ["independent", "stratified", "sobol"])
@@ -27,6 +31,29 @@ def test_threads_and_bands_change_no_bit(sampler):
         other = render(scene, "area", sampler=sampler, spp=12, seed=5, threads=threads, band_rows=rows)
         np.testing.assert_array_equal(one.mean, other.mean)
         np.testing.assert_array_equal(one.standard_error, other.standard_error)
+
+
+@pytest.mark.parametrize("first_pass", [1, 1 << 22])
+def test_passes_do_not_split_packets_as_the_clock_goes(monkeypatch, first_pass):
+    """On a slow machine a picture is made in many passes and on a fast one in few; the packets are the same."""
+    ends: list[int] = []
+    monkeypatch.setattr(render_module, "FIRST_PASS", first_pass)
+
+    def noted(run, pool, first, last, band_rows, progress):
+        ends.append(last)
+        one_pass(run, pool, first, last, band_rows, progress)
+
+    one_pass = render_module._one_pass
+    monkeypatch.setattr(render_module, "_one_pass", noted)
+    pictures = []
+    for short in (1e-9, 1e9):
+        monkeypatch.setattr(render_module, "SHORT", short)
+        ends.clear()
+        pictures.append(render(room(17), "area", sampler="independent", spp=200, seed=5).mean)
+        assert ends[-1] == 200
+        assert all(end == 1 or end % LANES == 0 for end in ends[:-1]), ends
+        assert len(ends) >= (3 if short < 1 else 1)
+    np.testing.assert_array_equal(*pictures)
 
 
 def test_another_seed_is_another_picture_of_the_same_scene():
@@ -145,7 +172,7 @@ def test_interrupt_keeps_what_is_done():
 
     def progress(state):
         calls.append(state)
-        if state.done >= 4 * STREAMS:
+        if state.done >= 2 * LANES * STREAMS:
             raise KeyboardInterrupt
 
     image = render(room(16), "area", spp=1 << 16, progress=progress)

@@ -2,11 +2,11 @@
 
     python tests/benchmarks/equal_time.py [--mitsuba-python PYTHON] [--scenes soft_shadows cornell_box]
 
-Both render the same file at the same size in one run, first Mitsuba, then raylab; on a machine with other work the
-ratio means little. Each ratio is a geometric mean over the times at which both have been measured; the lines above it
-give each of them. Compilation is not counted. The truth is the mean of a
-long picture of each, so a systematic difference between the two would hurt both alike. Mitsuba needs an LLVM library:
-set DRJIT_LIBLLVM_PATH where it does not find one.
+Both render the same file at the same size in one run, picture by picture in turn, each after a first picture that is
+not counted (compilation). Times are medians. Each ratio is a geometric mean over raylab's times at which Mitsuba's
+curve is known; the lines above it give every point. The truth is the mean of a long picture of each, so a systematic
+difference between the two would hurt both alike. Mitsuba needs an LLVM library: set DRJIT_LIBLLVM_PATH where it does
+not find one.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ import os
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -28,46 +30,60 @@ SAMPLES = (16, 64, 256)
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
 SIZE = 256
 
+REPEATS = 7
+
 MITSUBA = r"""
 import json, re, sys, time
 from pathlib import Path
 import drjit as dr, mitsuba as mi, numpy as np
 mi.set_variant("llvm_ad_rgb")
-path, out = Path(sys.argv[1]), sys.argv[2]
-size, samplers, counts, long = map(json.loads, sys.argv[3:7])
+path, out, size = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
 mi.file_resolver().append(str(path.parent))
-pictures, rows = {}, []
-def load(sampler, count):
-    text = re.sub(r'<sampler type="\w+">', f'<sampler type="{sampler}">', path.read_text())
-    return mi.load_string(text, width=str(size), height=str(size), spp=str(count))
-def shoot(scene, seed, spp=0):
+scenes = {}
+for line in sys.stdin:
+    sampler, count, seed = json.loads(line)
+    if (sampler, count) not in scenes:
+        text = re.sub(r'<sampler type="\w+">', f'<sampler type="{sampler}">', path.read_text())
+        scenes[sampler, count] = mi.load_string(text, width=size, height=size, spp=str(count))
+    scene = scenes[sampler, count]
     start = time.perf_counter()
-    image = mi.render(scene, seed=seed, spp=spp)
+    image = mi.render(scene, seed=seed)
     dr.eval(image); dr.sync_thread()
     seconds = time.perf_counter() - start
-    return np.array(image)[..., :3], seconds
-for sampler in samplers:
-    for count in counts:
-        scene = load(sampler, count)
-        shoot(scene, 0)
-        for repeat in range(5):
-            image, seconds = shoot(scene, repeat + 1)
-            pictures[f"{sampler} {count} {repeat}"] = image
-            rows.append([sampler, int(scene.sensors()[0].sampler().sample_count()), count, repeat, seconds])
-scene = load("multijitter", 256)
-pictures["long"] = np.mean([shoot(scene, 100 + k)[0].astype(np.float64) for k in range(long)], axis=0)
-np.savez(out, rows=json.dumps(rows), **pictures)
+    np.save(out, np.array(image)[..., :3])
+    print()  # Mitsuba's own messages may have left a line open
+    print(json.dumps([int(scene.sensors()[0].sampler().sample_count()), seconds]), flush=True)
 """
 
 
-def mitsuba_rows(python: str, scene: Path, long: int) -> tuple[list, dict[str, np.ndarray]]:
-    with tempfile.TemporaryDirectory() as folder:
-        out = str(Path(folder) / "mitsuba.npz")
-        arguments = [str(scene), out, str(SIZE), json.dumps(SAMPLERS), json.dumps(SAMPLES), json.dumps(long)]
+class Mitsuba:
+    """A process that renders one scene with Mitsuba, picture by picture."""
+
+    def __init__(self, python: str, scene: Path, folder: str) -> None:
+        self.out = Path(folder) / "mitsuba.npy"
         environment = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
-        subprocess.run([python, "-c", MITSUBA, *arguments], check=True, env=environment)
-        with np.load(out) as data:
-            return json.loads(str(data["rows"])), {name: data[name] for name in data.files if name != "rows"}
+        self.process = subprocess.Popen(
+            [python, "-c", MITSUBA, str(scene), str(self.out), str(SIZE)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment,
+        )  # fmt: skip
+
+    def render(self, sampler: str, count: int, seed: int) -> tuple[np.ndarray, int, float]:
+        """The picture, its samples per pixel and its seconds."""
+        assert self.process.stdin
+        assert self.process.stdout
+        self.process.stdin.write(json.dumps([sampler, count, seed]) + "\n")
+        self.process.stdin.flush()
+        lines = iter(self.process.stdout.readline, "")
+        spp, seconds = json.loads(next(line for line in lines if line.startswith("[")))
+        return np.load(self.out).astype(np.float64), spp, seconds
+
+    def close(self) -> None:
+        self.process.communicate()
+
+
+def raylab_render(scene: raylab.Scene, spp: int, seed: int) -> tuple[np.ndarray, int, float]:
+    image = raylab.render(scene, sampler="sobol", spp=spp, seed=seed)
+    return image.mean, spp, image.report["seconds"]["render"]
 
 
 def at_time(curve: dict[float, float], seconds: float) -> float:
@@ -78,33 +94,42 @@ def at_time(curve: dict[float, float], seconds: float) -> float:
 
 def compare(python: str, name: str) -> dict[str, float]:
     path = SCENES / name / "scene.xml"
-    print(f"{name}: Mitsuba renders ...", flush=True)
-    rows, pictures = mitsuba_rows(python, path, long=16)
     scene = raylab.load(path, {"width": SIZE, "height": SIZE})
-    print(f"{name}: raylab renders ...", flush=True)
-    long = raylab.render(scene, sampler="sobol", spp=4096, seed=1000).mean
-    truth = (long + pictures["long"]) / 2
-    ours: dict[float, float] = {}
-    for spp in (*SAMPLES, 4 * SAMPLES[-1]):
-        images = [raylab.render(scene, sampler="sobol", spp=spp, seed=k) for k in range(5)]
-        seconds = float(np.median([i.report["seconds"]["render"] for i in images]))
-        ours[seconds] = float(np.mean([np.mean((i.mean - truth) ** 2) for i in images]))
-        print(f"  raylab sobol {spp:5d} spp  {seconds:7.3f} s  mean squared error {ours[seconds]:.3e}")
-    theirs: dict[str, dict[float, float]] = {}
-    for sampler in SAMPLERS:
-        curve = theirs.setdefault(sampler, {})
-        for count in SAMPLES:
-            some = [row for row in rows if row[0] == sampler and row[2] == count]
-            seconds = float(np.median([row[4] for row in some]))
-            errors = [np.mean((pictures[f"{sampler} {count} {row[3]}"] - truth) ** 2) for row in some]
-            curve[seconds] = float(np.mean(errors))
-            print(f"  Mitsuba {sampler} {some[0][1]:5d} spp  {seconds:7.3f} s  mean squared error {curve[seconds]:.3e}")
-    result = {}
-    for sampler, curve in theirs.items():
-        shared = [t for t in ours if min(curve) <= t <= max(curve)] or [min(max(min(ours), min(curve)), max(ours))]
-        result[sampler] = float(np.exp(np.mean([np.log(ours[t] / at_time(curve, t)) for t in shared if t in ours])))
-        print(f"{name}: raylab / Mitsuba {sampler}, mean squared error at equal time: {result[sampler]:.2f}")
+    with tempfile.TemporaryDirectory() as folder:
+        mitsuba = Mitsuba(python, path, folder)
+        print(f"{name}: a long picture by each ...", flush=True)
+        long = [mitsuba.render("multijitter", 256, 100 + k)[0] for k in range(16)]
+        truth = (np.mean(long, axis=0) + raylab.render(scene, sampler="sobol", spp=4096, seed=1000).mean) / 2
+        renderers = {("raylab", spp): partial(raylab_render, scene, spp) for spp in (*SAMPLES, 4 * SAMPLES[-1])}
+        for sampler in SAMPLERS:
+            renderers |= {(sampler, spp): partial(mitsuba.render, sampler, spp) for spp in SAMPLES}
+        curves = measure(renderers, truth)
+        mitsuba.close()
+    ours, result = curves.pop("raylab"), {}
+    for sampler, curve in curves.items():
+        shared = [t for t in ours if min(curve) <= t <= max(curve)]
+        result[sampler] = float(np.exp(np.mean([np.log(ours[t] / at_time(curve, t)) for t in shared])))
+        print(f"{name}: raylab / Mitsuba {sampler}, mean squared error at equal time: {result[sampler]:.2f}"
+              f" (over {len(shared)} times)")  # fmt: skip
     return result
+
+
+def measure(renderers: dict[tuple[str, int], Any], truth: np.ndarray) -> dict[str, dict[float, float]]:
+    """{name: {seconds: mean squared error}}, the renderers taking turns."""
+    runs: dict[tuple[str, int], list[tuple[float, float]]] = {key: [] for key in renderers}
+    spp = {}
+    for repeat in range(REPEATS + 1):
+        print(f"  round {repeat} of {REPEATS} ...", flush=True)
+        for key, draw in renderers.items():
+            picture, spp[key], seconds = draw(repeat)
+            if repeat > 0:
+                runs[key].append((seconds, float(np.mean((picture - truth) ** 2))))
+    curves: dict[str, dict[float, float]] = {}
+    for key, pairs in runs.items():
+        seconds, error = float(np.median([p[0] for p in pairs])), float(np.mean([p[1] for p in pairs]))
+        curves.setdefault(key[0], {})[seconds] = error
+        print(f"  {key[0]:12s} {spp[key]:5d} spp  {seconds:7.3f} s  mean squared error {error:.3e}")
+    return curves
 
 
 def main() -> None:

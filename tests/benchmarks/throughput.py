@@ -20,7 +20,7 @@ import trimesh
 
 from raylab import description as d
 from raylab import samplers
-from raylab.embree import TNEAR, library
+from raylab.embree import TNEAR, library, new_packet
 from raylab.jit import njit
 from raylab.pixels import cached_accumulate, new_accumulator, view
 from raylab.render import render
@@ -126,7 +126,9 @@ def main(rounds: int = 7) -> dict[str, float]:
     def raylab(top: int, bottom: int) -> None:
         tallied = data._replace(tally=View(np.zeros(TALLIES, np.int64)))
         sampler = samplers.make("independent", 0, SPP)
-        cached_accumulate(tallied, camera, shade, sampler, view(accumulator), SIZE, SIZE, (top, bottom), (0, SPP))
+        cached_accumulate(
+            tallied, camera, shade, sampler, new_packet(), view(accumulator), SIZE, SIZE, (top, bottom), (0, SPP)
+        )
 
     raylab(0, 1)
     seconds: dict[str, list[float]] = {f"{name} {k}": [] for name in ("bare", "raylab") for k in (1, 2)}
