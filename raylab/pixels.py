@@ -22,8 +22,9 @@ def new_accumulator(streams: int, width: int, height: int) -> npt.NDArray[np.flo
     return np.zeros((streams, height, width, COLUMNS))
 
 
-def radiance(scene, strategy, o, d, geometry, primitive, rng):
-    """Radiance along an eye ray: what the surface emits that it meets first, and what it reflects."""
+def radiance(scene, strategy, o, d, first, rng):
+    """Radiance along an eye ray that meets `first` = (geometry, primitive): what that emits and what it reflects."""
+    geometry, primitive = first
     if geometry < 0:
         return strategy.visible(scene.environment.eval(normalize(d)))
     hit = hit_of(scene, geometry, primitive, o, d, 0.0)
@@ -40,55 +41,64 @@ def radiance(scene, strategy, o, d, geometry, primitive, rng):
 def accumulate(scene, camera, strategy, sampler, packet, pixels, width, height, rows, samples):
     """Add samples first .. last - 1 of each stream to the pixels of `rows` = (top, bottom).
 
-    `pixels` has a row for each (stream, pixel). Eye rays of a pixel go in packets, the streams in turn.
+    `pixels` has a row for each (stream, pixel). The eye rays of a pixel go in packets, a part to each stream.
     """
     streams = len(pixels) // (width * height)
-    end = streams * samples[1]
+    share = LANES // streams
     for row in range(rows[0], rows[1]):
         for column in range(width):
             pixel = row * width + column
-            for first in range(streams * samples[0], end, LANES):
-                last = min(first + LANES, end)
+            for first in range(samples[0], samples[1], share):
+                last = min(first + share, samples[1])
                 drawn = send(scene, camera, sampler, packet, column, row, pixel, streams, first, last)
-                for i in range(first, last):
-                    rng = sampler.stream(pixel, i % streams, i // streams)
-                    sampler.counter.next[0] = drawn
-                    o, d = packet.o(i - first), packet.d(i - first)
-                    geometry, primitive = packet.hit(i - first)
-                    add(
-                        pixels,
-                        i % streams * width * height + pixel,
-                        _radiance(scene, strategy, o, d, geometry, primitive, rng),
-                    )
+                for stream in range(streams):
+                    lane = stream * (last - first)
+                    place = stream * width * height + pixel
+                    receive(scene, strategy, sampler, packet, lane, drawn, pixels, place, pixel, stream, first, last)
 
 
 @njit
 def send(scene, camera, sampler, packet, column, row, pixel, streams, first, last):
-    """Trace eye rays first .. last - 1 of a pixel; returns how many dimensions of its stream each has drawn."""
-    for i in range(first, last):
-        o, d, tfar = camera.ray(column, row, sampler.stream(pixel, i % streams, i // streams))
-        packet.put(i - first, o, d, tfar)
-        if not is_valid_ray(o, d):
-            packet.switch_off(i - first)
-            scene.tally[INVALID_RAYS] += 1
-    for lane in range(last - first, LANES):
-        packet.switch_off(lane)
+    """Trace a pixel's eye rays of samples first .. last - 1, stream by stream.
+
+    Returns how many dimensions of its stream each has drawn.
+    """
+    lane = 0
+    for stream in range(streams):
+        for sample in range(first, last):
+            o, d, tfar = camera.ray(column, row, sampler.stream(pixel, stream, sample))
+            packet.put(lane, o, d, tfar)
+            if not is_valid_ray(o, d):
+                packet.switch_off(lane)
+                scene.tally[INVALID_RAYS] += 1
+            lane += 1
+    for free in range(lane, LANES):
+        packet.switch_off(free)
     trace_packet(scene.embree, packet)
     return sampler.counter.next[0]
 
 
 @njit
-def add(pixels, place, value):
-    """Welford's update of mean and squares; a value that is not finite is counted and left out."""
-    if not is_finite(value):
-        pixels[place, INVALID] += 1.0
-        return
+def receive(scene, strategy, sampler, packet, lane, drawn, pixels, place, pixel, stream, first, last):
+    """Shade one stream's samples, lanes `lane`, lane + 1, ... of the packet, and add them to its running mean.
+
+    A value that is not finite is counted and left out. The update of mean and squares is Welford's.
+    """
     mean = Vec3(pixels[place, MEAN], pixels[place, MEAN + 1], pixels[place, MEAN + 2])
     squares = Vec3(pixels[place, SQUARES], pixels[place, SQUARES + 1], pixels[place, SQUARES + 2])
-    count = pixels[place, COUNT] + 1.0
-    step = value - mean
-    mean += step * (1.0 / count)
-    squares += step * (value - mean)
+    count = pixels[place, COUNT]
+    for sample in range(first, last):
+        rng = sampler.stream(pixel, stream, sample)
+        sampler.counter.next[0] = drawn
+        value = _radiance(scene, strategy, packet.o(lane), packet.d(lane), packet.hit(lane), rng)
+        if is_finite(value):
+            count += 1.0
+            step = value - mean
+            mean += step * (1.0 / count)
+            squares += step * (value - mean)
+        else:
+            pixels[place, INVALID] += 1.0
+        lane += 1
     pixels[place, MEAN], pixels[place, MEAN + 1], pixels[place, MEAN + 2] = mean.x, mean.y, mean.z
     pixels[place, SQUARES], pixels[place, SQUARES + 1], pixels[place, SQUARES + 2] = squares.x, squares.y, squares.z
     pixels[place, COUNT] = count

@@ -3,8 +3,8 @@
     python tests/benchmarks/equal_time.py [--mitsuba-python PYTHON] [--scenes soft_shadows cornell_box]
 
 Both render the same file at the same size in one run, picture by picture in turn, each after a first picture that is
-not counted (compilation). Times are medians. Each ratio is a geometric mean over raylab's times at which Mitsuba's
-curve is known; the lines above it give every point. The truth is the mean of a long picture of each, so a systematic
+not counted (compilation). Times are medians. Each ratio is a geometric mean over raylab's three times, at which
+Mitsuba's curve is read off; behind it stand the three. The truth is the mean of a long picture of each, so a systematic
 difference between the two would hurt both alike. Mitsuba needs an LLVM library: set DRJIT_LIBLLVM_PATH where it does
 not find one.
 """
@@ -87,9 +87,12 @@ def raylab_render(scene: raylab.Scene, spp: int, seed: int) -> tuple[np.ndarray,
 
 
 def at_time(curve: dict[float, float], seconds: float) -> float:
-    """The mean squared error of a curve {seconds: error} at a time, along straight lines in log-log."""
-    times = sorted(curve)
-    return float(np.exp(np.interp(np.log(seconds), np.log(times), np.log([curve[t] for t in times]))))
+    """The mean squared error of a curve {seconds: error} at a time: lines in log-log, the outer ones prolonged."""
+    times = np.log(sorted(curve))
+    errors = np.log([curve[t] for t in sorted(curve)])
+    k = int(np.clip(np.searchsorted(times, np.log(seconds)), 1, len(times) - 1))
+    slope = (errors[k] - errors[k - 1]) / (times[k] - times[k - 1])
+    return float(np.exp(errors[k] + slope * (np.log(seconds) - times[k])))
 
 
 def compare(python: str, name: str) -> dict[str, float]:
@@ -100,17 +103,17 @@ def compare(python: str, name: str) -> dict[str, float]:
         print(f"{name}: a long picture by each ...", flush=True)
         long = [mitsuba.render("multijitter", 256, 100 + k)[0] for k in range(16)]
         truth = (np.mean(long, axis=0) + raylab.render(scene, sampler="sobol", spp=4096, seed=1000).mean) / 2
-        renderers = {("raylab", spp): partial(raylab_render, scene, spp) for spp in (*SAMPLES, 4 * SAMPLES[-1])}
+        renderers = {("raylab", spp): partial(raylab_render, scene, spp) for spp in SAMPLES}
         for sampler in SAMPLERS:
             renderers |= {(sampler, spp): partial(mitsuba.render, sampler, spp) for spp in SAMPLES}
         curves = measure(renderers, truth)
         mitsuba.close()
     ours, result = curves.pop("raylab"), {}
     for sampler, curve in curves.items():
-        shared = [t for t in ours if min(curve) <= t <= max(curve)]
-        result[sampler] = float(np.exp(np.mean([np.log(ours[t] / at_time(curve, t)) for t in shared])))
-        print(f"{name}: raylab / Mitsuba {sampler}, mean squared error at equal time: {result[sampler]:.2f}"
-              f" (over {len(shared)} times)")  # fmt: skip
+        ratios = [ours[t] / at_time(curve, t) for t in ours]
+        result[sampler] = float(np.exp(np.mean(np.log(ratios))))
+        points = ", ".join(f"{r:.2f}" for r in ratios)
+        print(f"{name}: raylab / Mitsuba {sampler}, mean squared error at equal time: {result[sampler]:.2f} ({points})")
     return result
 
 
