@@ -190,7 +190,7 @@ class SceneDescription:
     shapes: tuple[Shape, ...] = ()
     lights: tuple[Light, ...] = ()
     environment: Environment | None = None
-    sampler: Literal["independent", "stratified", "sobol"] = "sobol"
+    sampler: Literal["independent", "stratified", "latin", "sobol"] = "sobol"
     spp: int = 16
     seed: int = 0
     hide_emitters: bool = False

@@ -27,7 +27,7 @@ from raylab.strategies import strategy
 from raylab.surface import INVALID_RAYS, SHADOW_RAYS, TALLIES
 from raylab.view import View
 
-# Independent scrambles of a sobol or stratified picture, from which its error is estimated. Each more costs precision
+# Independent scrambles of a picture (all samplers but one), from which its error is estimated. Each more costs precision
 # (1.3 times the variance of one scramble at 64 samples for two, 1.7 for four; 1.1 and 1.3 at 256), so few at first.
 FEW_STREAMS, STREAMS, FEW_SAMPLES = 2, 4, 512
 SHORT = 0.5  # seconds: what can be done in this time is one pass
@@ -111,7 +111,7 @@ def render(
     Parameters
     ----------
     shade : a name from `raylab.strategies.NAMES`, or shade(x, V, brdf, N, scene, rng), or shade(x, k_d, N, scene, rng).
-    sampler : "independent", "stratified" or "sobol"; the scene's own by default.
+    sampler : "independent", "stratified", "latin" or "sobol"; the scene's own by default.
     spp, seconds, relative_error : stop after so many samples a pixel, after a time, or at a noise level
         (`Image.relative_error`); at most one of them, spp of the scene by default.
     seed : picture number; the same seed gives the same bits for every number of threads.

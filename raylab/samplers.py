@@ -5,8 +5,9 @@ A sampler gives each sample of each pixel a stream of numbers; the stream is wha
 what a scene does not need (a lens, a shutter) it does not draw, so no dimension is spent on it.
 
 `independent` numbers are unrelated. `stratified` points fall one into each cell of a grid over the unit square, for
-each pair of dimensions. `sobol` points are an Owen-scrambled Sobol' sequence, good at each prefix of 2^k points.
-The points of the latter two depend on one another within a stream, so an honest standard error compares several
+each pair of dimensions. `latin` numbers (a Latin hypercube) fall one into each of n intervals, for each dimension, in
+an order of its own. `sobol` points are an Owen-scrambled Sobol' sequence, good at each prefix of 2^k points.
+The points of all but the first depend on one another within a stream, so an honest standard error compares several
 streams, which are scrambled independently (randomised quasi-Monte Carlo).
 """
 
@@ -123,6 +124,50 @@ class Stratified(NamedTuple):
         n = self.across * self.down
         key = combine(combine(combine(self.seed, pixel), stream), sample // n)
         return StratifiedStream(key, sample % n, self.across, self.down, self.counter)
+
+
+# --- Latin hypercube ---
+
+
+@record
+class LatinStream(NamedTuple):
+    """Interval `place` of `n`, in another order in each dimension: McKay, Beckman, Conover 1979."""
+
+    key: int
+    place: int
+    n: int
+    counter: Counter
+
+    def number(self):
+        d = self.counter.next[0]
+        self.counter.next[0] = d + 1
+        return latin_number(self, d)
+
+    def square(self):
+        d = self.counter.next[0]
+        self.counter.next[0] = d + 2
+        return latin_number(self, d), latin_number(self, d + 1)
+
+
+@njit
+def latin_number(stream, d):
+    """A random point of the interval that dimension d's permutation gives to this sample."""
+    key = combine(stream.key, d)
+    return stratum(permute(stream.place, stream.n, key), stream.n, combine(key, stream.n + stream.place))
+
+
+@record
+class Latin(NamedTuple):
+    """`n` samples for each hypercube; further samples begin a new one."""
+
+    seed: int
+    n: int
+    counter: Counter
+
+    def stream(self, pixel, stream, sample):
+        self.counter.next[0] = 0
+        key = combine(combine(combine(self.seed, pixel), stream), sample // self.n)
+        return LatinStream(key, sample % self.n, self.n, self.counter)
 
 
 # --- Owen-scrambled Sobol' ---
@@ -264,13 +309,15 @@ def grid(n: int) -> tuple[int, int]:
     return n // down, down
 
 
-NAMES = ("independent", "stratified", "sobol")
+NAMES = ("independent", "stratified", "latin", "sobol")
 
 
 def make(name: str, seed: int, samples: int) -> Any:
-    """The sampler called `name`; `samples` is the number of samples in one stream (the cells of a grid)."""
+    """The sampler called `name`; `samples` is the number of samples in one stream (cells, intervals)."""
     if name == "independent":
         return Independent(seed, new_counter())
     if name == "stratified":
         return Stratified(seed, *grid(samples), new_counter())
+    if name == "latin":
+        return Latin(seed, samples, new_counter())
     return Sobol(seed, View(sobol_table()), View(sobol_columns()), new_counter())

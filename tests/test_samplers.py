@@ -73,6 +73,24 @@ def test_independent_points_are_uniform_in_the_square():
 # --- stratified ---
 
 
+@pytest.mark.parametrize("n", [1, 2, 7, 16, 100])
+def test_a_latin_hypercube_has_one_point_in_each_interval_of_each_dimension(n):
+    for k in range(2):  # samples n .. 2 n - 1 are a new hypercube
+        p = points("latin", np.arange(n) + k * n, pairs=3, grid=n)
+        for axis in p.reshape(n, 6).T:
+            assert sorted(cells(axis, n)) == list(range(n))
+
+
+def test_the_dimensions_of_a_latin_hypercube_are_permuted_independently():
+    """The pairs of intervals of any two dimensions, over many pixels, each as often; place 0 in each alike."""
+    n, pixels = 4, size(8_000, 500)
+    p = points("latin", np.tile(np.arange(n), pixels), pairs=2, pixel=np.repeat(np.arange(pixels), n), grid=n)
+    cell = cells(p, n).reshape(pixels, n, 4)
+    for first, second in ((0, 1), (0, 2), (1, 3)):
+        pair = cell[:, 0, first] * n + cell[:, 0, second]  # one sample of each pixel: independent trials
+        assert chi_square_p(np.bincount(pair, minlength=n * n), np.full(n * n, pixels / n**2), least=30.0) > ALPHA
+
+
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 7, 9, 12, 13, 16, 36, 64])
 def test_stratified_points_fall_one_into_each_cell_of_each_pair(n):
     across, down = samplers.grid(n)
@@ -85,17 +103,19 @@ def test_stratified_points_fall_one_into_each_cell_of_each_pair(n):
 
 
 @pytest.mark.parametrize("n", [1, 5, 16])
-def test_stratified_numbers_fall_one_into_each_interval(n):
-    u = numbers("stratified", n, 3, grid=n)
+@pytest.mark.parametrize("name", ["stratified", "latin"])
+def test_numbers_fall_one_into_each_interval(name, n):
+    u = numbers(name, n, 3, grid=n)
     for k in range(3):
         assert sorted(cells(u[:, k], n)) == list(range(n))
 
 
-def test_stratified_grids_pixels_and_pairs_differ():
+@pytest.mark.parametrize("name", ["stratified", "latin"])
+def test_grids_pixels_and_pairs_differ(name):
     n = 16
-    p = points("stratified", 2 * n, pairs=2, grid=n)
-    other = points("stratified", n, pairs=2, pixel=1, grid=n)
-    stream = points("stratified", n, pairs=2, stream=1, grid=n)
+    p = points(name, 2 * n, pairs=2, grid=n)
+    other = points(name, n, pairs=2, pixel=1, grid=n)
+    stream = points(name, n, pairs=2, stream=1, grid=n)
     assert len(np.unique(np.concatenate([p, other, stream]))) == 4 * n * 4  # no number twice
 
 
@@ -283,10 +303,10 @@ def smooth(u):
 VARIANCE = ((math.e**2 - 1.0) / 4.0) ** 2 - 1.0
 
 
-def means(name, n):
+def means(name, n, integrand=smooth):
     """RUNS means of n points each, from as many pixels."""
     p = points(name, np.tile(np.arange(n), RUNS), pixel=1000 * n + np.repeat(np.arange(RUNS), n), grid=n)
-    return smooth(p[:, 0]).reshape(RUNS, n).mean(axis=1)
+    return integrand(p[:, 0]).reshape(RUNS, n).mean(axis=1)
 
 
 def upper(variance, runs):
@@ -294,12 +314,13 @@ def upper(variance, runs):
     return variance * (runs - 1) / stats.chi2.isf(1.0 - ALPHA, runs - 1)
 
 
-@pytest.mark.parametrize("name", ["independent", "stratified", "sobol"])
+@pytest.mark.parametrize("name", ["independent", "stratified", "latin", "sobol"])
 def test_means_are_unbiased_and_no_worse_than_theory(name):
     n = size(256, 64)
     m = means(name, n)
     assert abs(m.mean() - 1.0) < stats.norm.isf(ALPHA / 2) * math.sqrt(VARIANCE / n / RUNS)
-    bound = {"independent": 1.0, "stratified": 1.0, "sobol": math.e}[name] * VARIANCE / n  # Owen 1997: e sigma^2 / n
+    # Owen 1997: n / (n - 1) sigma^2 / n for a Latin hypercube, e sigma^2 / n for nets
+    bound = {"independent": 1.0, "stratified": 1.0, "latin": n / (n - 1), "sobol": math.e}[name] * VARIANCE / n
     lower = m.var(ddof=1) * (RUNS - 1) / stats.chi2.isf(ALPHA, RUNS - 1)
     assert lower < bound
     if name == "independent":
@@ -316,3 +337,27 @@ def test_the_variance_of_sobol_falls_like_n_to_the_minus_three():
         assert slope + stats.norm.isf(ALPHA) * error < -2.5, (slope, error)
     else:
         assert slope < -2.0 + 2.0 * error, (slope, error)  # sixteen runs only: clearly better than stratified
+
+
+LATIN = {  # integrand on the square, exact variance of a Latin hypercube's mean of n points
+    # slide "Creating soft shadows": the jitter within each of n intervals is all that is left of 2 u1
+    "linear, n^-3": (lambda p: 2.0 * p[:, 0], lambda n: 1.0 / (3.0 * n**3)),
+    # an edge along an axis cuts one interval of n: of the share f = n/3 mod 1 of it
+    "edge along an axis, n^-2": (lambda p: (p[:, 0] < 1 / 3) * 1.0, lambda n: (n / 3 % 1) * (1 - n / 3 % 1) / n**2),
+    "product, n^-1": (lambda p: p[:, 0] * p[:, 1], lambda n: product(n)),
+}
+
+
+def product(n):
+    """u1 u2 = 1/4 + a/2 + b/2 + a b, a = c + jitter: a permutation statistic, (sum c^2)^2 / (n - 1), and jitter."""
+    middle, jitter = (1.0 - n**-2) / 12.0, n**-2 / 12.0  # the variances of c and of its jitter
+    return middle**2 / (n - 1) + 2.0 * middle * jitter / n + jitter**2 / n + 2.0 * jitter / 4.0 / n
+
+
+@pytest.mark.parametrize("case", LATIN)
+def test_the_variance_of_a_latin_hypercube(case):
+    """Stein 1987: only what is no sum of functions of one dimension each keeps the order n^-1."""
+    integrand, exact = LATIN[case]
+    error = stats.norm.isf(ALPHA / 2) * math.sqrt(2.0 / RUNS)  # the means' kurtosis is 3 at most
+    for n in (16, size(128, 32)):
+        assert means("latin", n, integrand).var(ddof=1) == pytest.approx(exact(n), rel=error), n

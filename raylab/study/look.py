@@ -14,8 +14,8 @@ import numpy.typing as npt
 # Okabe and Ito 2008, "Color universal design", in the order in which they are best told apart; their yellow is too
 # pale for lines.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-LINES = {"independent": "-", "stratified": (0, (5, 1.5)), "sobol": (0, (1.2, 1.2))}
-MARKERS = {"independent": "o", "stratified": "s", "sobol": "D"}
+LINES = {"independent": "-", "stratified": (0, (5, 1.5)), "latin": (0, (4, 1.2, 1.2, 1.2)), "sobol": (0, (1.2, 1.2))}
+MARKERS = {"independent": "o", "stratified": "s", "latin": "^", "sobol": "D"}
 GREY = "#6b6b6b"
 MINUS, TIMES = "\N{MINUS SIGN}", "\N{MULTIPLICATION SIGN}"
 STYLE: dict[str, Any] = {
