@@ -3,7 +3,7 @@ PYTHON ?= python3.11
 BIN := .venv/bin
 STAMP := .venv/.installed
 
-.PHONY: demo test lint crosscheck bench docs clean
+.PHONY: demo figures test lint crosscheck bench docs clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -16,6 +16,9 @@ $(STAMP): pyproject.toml constraints.txt
 
 demo: $(STAMP)  ## render the lecture's pictures and its central plot into demo/index.html (under 5 minutes)
 	$(BIN)/python -m raylab.demo
+
+figures: $(STAMP)  ## make every figure of docs/gallery.md
+	$(BIN)/python -m raylab.cli figures -o docs/figures --gallery docs/gallery.md
 
 test: $(STAMP) lint  ## all tests, compiled and in plain Python (under 12 minutes on two cores)
 	$(BIN)/python -m pytest -n 2 -m "not crosscheck and not certify"

@@ -1,4 +1,4 @@
-"""The command line: raylab render, study, shades, demo.
+"""The command line: raylab render, study, shades, figures, demo.
 
 Standard output carries results, standard error everything else. Exit codes: 0 done, 2 bad input, 130 Ctrl-C.
 """
@@ -166,6 +166,39 @@ def study_command(
     click.echo(result.summary())
     click.echo(f"Wrote {page} and the table and plots beside it.")
     return 0 if result.complete else INTERRUPTED
+
+
+@commands.command("figures")
+@click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.option("-o", "folder", metavar="DIR", type=click.Path(path_type=Path, file_okay=False), help="Where to write.")
+@click.option("--list", "listed", is_flag=True, help="Name all figures and their slides instead.")
+@click.option("--gallery", metavar="FILE", type=click.Path(path_type=Path, dir_okay=False),
+              help="Write the page of all figures as well.")  # fmt: skip
+@PROGRESS
+def figures_command(
+    names: tuple[str, ...], folder: Path | None, listed: bool, gallery: Path | None, progress: bool | None
+) -> int:
+    """Make the lecture's figures (all, or those named); Ctrl-C keeps what is done."""
+    from raylab.figures import make
+    from raylab.figures.registry import chosen
+    from raylab.progress import StepBar
+
+    wanted = chosen(names)
+    if listed:
+        for figure in wanted:
+            click.echo(f"{figure.name:24} {figure.slide}")
+        return 0
+    if folder is None:
+        raise UserError("figures: expected -o DIR, the folder to write to (or --list)")
+    with StepBar("figures", progress) as step:
+        done = make.figures(wanted, folder, step)
+    if gallery and len(done) == len(wanted):
+        make.gallery(gallery, folder)
+    click.echo(f"Wrote {len(done)} of {len(wanted)} figures into {folder}.")
+    if len(done) < len(wanted):
+        _say("stopped by Ctrl-C; what is done is kept.")
+        return INTERRUPTED
+    return 0
 
 
 @commands.command("demo")

@@ -1,4 +1,4 @@
-"""The slide table: every slide of the lecture, in order, and the function that mirrors it.
+"""The slide table: every slide of the lecture, in order: the functions that mirror it, a scene, a figure and a test.
 
 `docs/slides.md` is this table as a page; a test keeps the two equal and the table complete.
 """
@@ -9,11 +9,17 @@ from typing import NamedTuple
 
 
 class Slide(NamedTuple):
-    """A slide: its title (numbered where several slides share it), its functions, and what to know about them."""
+    """A slide: its title (told apart where several slides share it), its functions, and what to know about them.
+
+    `scene` is a folder of reference_scenes, `figure` a name of `raylab figures`, `test` a file::name in tests.
+    """
 
     title: str
     functions: tuple[str, ...]
     note: str = ""
+    scene: str = ""
+    figure: str = ""
+    test: str = ""
 
 
 NOT_YET = "not in this version"
@@ -84,8 +90,10 @@ TABLE = (
 
 def markdown() -> str:
     """The table as docs/slides.md shows it."""
-    lines = ["| slide | function | note |", "|---|---|---|"]
+    lines = ["| slide | function | scene | figure | test | note |", "|---|---|---|---|---|---|"]
     for slide in TABLE:
         functions = ", ".join(f"`{name}`" for name in slide.functions) or "-"
-        lines.append(f"| {slide.title} | {functions} | {slide.note} |")
+        figure = f"[{slide.figure}](figures/{slide.figure}.png)" if slide.figure else "-"
+        scene, test = (f"`{name}`" if name else "-" for name in (slide.scene, slide.test))
+        lines.append(f"| {slide.title} | {functions} | {scene} | {figure} | {test} | {slide.note} |")
     return "\n".join(lines)

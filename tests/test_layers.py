@@ -14,7 +14,8 @@ ORDER = [
     "_version", "errors", "description", "jit", "vec3", "view", "record", "rng", "samplers", "sampling", "brdf",
     "point", "lights", "environment", "materials", "quadrics", "callbacks", "embree", "surface", "shadow", "shade",
     "direct", "camera", "triangles", "geometry", "emitters", "palette", "sky", "scene", "strategies", "pixels", "image",
-    "render", "quadrature", "closed_forms", "io", "__init__", "slides", "explain", "progress", "study", "demo", "cli",
+    "render", "quadrature", "closed_forms", "io", "__init__", "slides", "explain", "progress", "study", "figures",
+    "demo", "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
 

@@ -22,6 +22,12 @@ LECTURE = {
 }  # fmt: skip
 
 
+# Slides without scene, figure or test, each for a reason; everything else must have all of them.
+PICTURES_ONLY = {"Advanced Ray Tracing", "The Blue Umbrella"}
+# Rows whose parts are still to come. This list only shrinks.
+TO_COME = {slide.title for slide in slides.TABLE} - PICTURES_ONLY
+
+
 def resolve(name: str):
     module, _, attribute = name.rpartition(".")
     return getattr(importlib.import_module(module), attribute)
@@ -40,6 +46,26 @@ def test_slide_has_its_functions_or_says_why_not(slide):
     assert slide.functions or slide.note
     for name in slide.functions:
         assert callable(resolve(name)), name
+
+
+@pytest.mark.parametrize("slide", slides.TABLE, ids=lambda slide: slide.title)
+def test_slide_has_scene_figure_and_test(slide):
+    parts = (slide.functions, slide.scene, slide.figure, slide.test)
+    if slide.title in PICTURES_ONLY:
+        assert slide.note
+    elif slide.title in TO_COME:
+        assert not all(parts), "complete: take it off the list"
+    else:
+        assert all(parts), parts
+
+
+@pytest.mark.parametrize("slide", slides.TABLE, ids=lambda slide: slide.title)
+def test_scene_and_test_of_slide_exist(slide):
+    root = Path(__file__).parents[1]
+    assert not slide.scene or (root / "reference_scenes" / slide.scene / "scene.xml").is_file()
+    if slide.test:
+        file, _, name = slide.test.partition("::")
+        assert f"\ndef {name}(" in (root / "tests" / file).read_text()
 
 
 def test_every_shade_is_in_the_table_and_names_its_slide():
