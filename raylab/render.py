@@ -27,8 +27,9 @@ from raylab.strategies import strategy
 from raylab.surface import INVALID_RAYS, SHADOW_RAYS, TALLIES
 from raylab.view import View
 
-# Independent scrambles of a picture (all samplers but one), from which its error is estimated. Each more costs precision
-# (1.3 times the variance of one scramble at 64 samples for two, 1.7 for four; 1.1 and 1.3 at 256), so few at first.
+# Independent scrambles of a picture (all samplers but one), from which its error is estimated. Each more costs
+# precision (1.3 times the variance of one scramble at 64 samples for two, 1.7 for four; 1.1 and 1.3 at 256), so few at
+# first.
 FEW_STREAMS, STREAMS, FEW_SAMPLES = 2, 4, 512
 SHORT = 0.5  # seconds: what can be done in this time is one pass
 FIRST_PASS = 1 << 22  # camera rays that the first pass may take over the whole picture
