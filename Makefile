@@ -44,5 +44,5 @@ clean:  ## remove what the targets above have made
 	rm -rf .venv demo docs/_build build *.egg-info .pytest_cache .mypy_cache .ruff_cache
 
 # The test files that also run without the compiler: the same source in plain Python, at small sizes.
-PLAIN := $(addprefix tests/test_,$(addsuffix .py,twin vec3 record rng samplers sampling brdf lights environment \
+PLAIN := $(addprefix tests/test_,$(addsuffix .py,twin vec3 record rng samplers sampling fresnel brdf lights environment \
 	quadrics camera materials geometry microfacet))

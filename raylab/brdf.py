@@ -1,5 +1,9 @@
 """BRDFs: eval(V, L) -> f_r in 1/sr, sample(V, N, u) -> w, p_w, pdf(V, w, N) in 1/sr.
 
+A smooth surface (`is_specular()`) has no f_r to speak of: it is black in `eval` and cannot be met by chance. Instead
+`reflection(V, N)` is the share of light that it mirrors, `refraction(V, N)` the direction and share that it lets pass;
+both are black for all others. `is_glossy()` tells whether there is a lobe, so that sampling the BRDF helps.
+
 V points to the eye, L and w to the light, N to the side of V; all have unit length. f_r does not contain the
 cosine, and k_d is a BRDF value (reflectance / pi), as on the slides.
 """
@@ -11,7 +15,7 @@ from typing import NamedTuple
 from raylab.jit import njit
 from raylab.record import record
 from raylab.sampling import PI, cos_power, pdf_cos_hemisphere, pdf_phong_lobe, sample_cos_hemisphere, sample_phong_lobe
-from raylab.vec3 import Vec3, dot, luminance
+from raylab.vec3 import Vec3, black, dot, luminance
 
 
 @njit
@@ -38,6 +42,15 @@ class Lambertian(NamedTuple):
 
     def is_glossy(self):
         return False
+
+    def is_specular(self):
+        return False
+
+    def reflection(self, V, N):
+        return black
+
+    def refraction(self, V, N):
+        return N, black
 
 
 @record
@@ -74,6 +87,15 @@ class Phong(NamedTuple):
 
     def is_glossy(self):
         return luminance(self.k_s) > 0.0
+
+    def is_specular(self):
+        return False
+
+    def reflection(self, V, N):
+        return black
+
+    def refraction(self, V, N):
+        return N, black
 
 
 @njit

@@ -7,7 +7,7 @@ primaries as float64 arrays of shape (3,), matrices are (4, 4) float64 and map l
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
@@ -54,7 +54,34 @@ class Phong:
     exponent: float = 30.0
 
 
-Material = Diffuse | Phong
+@dataclass(frozen=True, eq=False)
+class Conductor:
+    """A smooth metal of index `eta` + i `k` relative to the air, for each colour; by default a perfect mirror."""
+
+    eta: Array = field(default_factory=lambda: _rgb(0.0))
+    k: Array = field(default_factory=lambda: _rgb(1.0))
+    specular_reflectance: Array = field(default_factory=lambda: _rgb(1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Dielectric:
+    """Smooth glass of index `int_ior` behind the surface and `ext_ior` in front of it (BK7 and air by default).
+
+    It belongs on both sides of a shape: on the back as `inside`. The colours scale what Fresnel's formulas give.
+    """
+
+    int_ior: float = 1.5046
+    ext_ior: float = 1.000277
+    specular_reflectance: Array = field(default_factory=lambda: _rgb(1.0))
+    specular_transmittance: Array = field(default_factory=lambda: _rgb(1.0))
+
+    @property
+    def inside(self) -> Dielectric:
+        """The same boundary seen from behind."""
+        return replace(self, int_ior=self.ext_ior, ext_ior=self.int_ior)
+
+
+Material = Diffuse | Phong | Conductor | Dielectric
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

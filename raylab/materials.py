@@ -1,7 +1,7 @@
 """What a surface is made of: material number, normal and texture coordinates -> brdf.
 
-The two kinds of table differ in the BRDF that they make, and `textures` in whether there is anything to look up, so
-that a scene of plain diffuse surfaces is compiled without lobes and without textures.
+The kinds of table differ in the BRDF that they make, and `textures` in whether there is anything to look up, so that
+a scene of plain diffuse surfaces is compiled without lobes, without mirrors and without textures.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from typing import Any, NamedTuple
 
 from raylab.brdf import Lambertian, Phong
 from raylab.jit import njit
+from raylab.kinds import CONDUCTOR, DIELECTRIC, KIND, PHONG, TEXTURE, AnyBrdf
 from raylab.record import record
+from raylab.sampling import frame
 from raylab.vec3 import Vec3, vec3_at
 from raylab.view import View
 
@@ -88,6 +90,9 @@ class DiffuseMaterials(NamedTuple):
     def glossy(self):
         return False
 
+    def smooth(self):
+        return False
+
 
 @record
 class PhongMaterials(NamedTuple):
@@ -104,3 +109,29 @@ class PhongMaterials(NamedTuple):
 
     def glossy(self):
         return True
+
+    def smooth(self):
+        return False
+
+
+@record
+class AnyMaterials(NamedTuple):
+    """Rows of ROW columns (`raylab.kinds`), each of one of the `kinds` of the scene."""
+
+    rows: View
+    textures: Any
+    kinds: Any  # Kinds
+
+    def at(self, material, N, uv):
+        plain = vec3_at(self.rows, material)
+        k_d = self.textures.colour(int(self.rows[material, TEXTURE]), uv, plain) / math.pi
+        tangent, _ = frame(N)
+        return AnyBrdf(int(self.rows[material, KIND]), k_d, N, tangent, material, self.rows, self.kinds)
+
+    def glossy(self):
+        """Does any surface have a lobe?"""
+        return self.kinds.phong.has(PHONG)
+
+    def smooth(self):
+        """Is any surface a mirror or a piece of glass?"""
+        return self.kinds.conductor.has(CONDUCTOR) or self.kinds.dielectric.has(DIELECTRIC)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from raylab import description as d
+from raylab import kinds as k
 from raylab import materials as m
 from raylab.errors import SceneError
 from raylab.view import View
@@ -24,7 +26,6 @@ class Palette:
         self._rows: list[list[float]] = []
         self._bitmaps: list[d.Bitmap] = []
         self._keep: list[d.Material] = []
-        self.glossy = False
 
     @property
     def textured(self) -> bool:
@@ -41,24 +42,13 @@ class Palette:
         return self._numbers[id(material)]
 
     def _row(self, material: d.Material) -> list[float]:
-        if isinstance(material, d.Diffuse):
-            return [*self._colour(material.reflectance, "diffuse reflectance"), 0.0, 0.0, 0.0, 1.0]
-        if not isinstance(material, d.Phong):
-            raise SceneError(f"expected a material of raylab.description, got {type(material).__name__}")
-        if not (0.0 <= material.exponent <= 1e9):
-            raise SceneError(f"phong: exponent must be in [0, 1e9], got {material.exponent}")
-        diffuse = self._colour(material.diffuse_reflectance, "phong diffuse_reflectance")
-        specular = reflectance(material.specular_reflectance, "phong specular_reflectance")
-        value = material.diffuse_reflectance
-        brightest = value.pixels.max(axis=(0, 1)) if isinstance(value, d.Bitmap) else np.asarray(value)
-        if np.max(brightest + specular) > 1.0 + 1e-9:
-            raise SceneError(
-                f"phong: diffuse and specular reflectance add up to more than 1: {brightest} and {specular}"
-            )
-        self.glossy = self.glossy or bool(specular.max() > 0.0)
-        return [*diffuse, *specular, float(material.exponent)]
+        for described, read in ROWS.items():
+            if isinstance(material, described):
+                return read(self, material)
+        raise SceneError(f"expected a material of raylab.description, got {type(material).__name__}")
 
-    def _colour(self, value: d.Colour, what: str) -> list[float]:
+    def colour(self, value: d.Colour, what: str) -> list[float]:
+        """The columns COLOUR and TEXTURE."""
         if isinstance(value, d.Bitmap):
             if np.ndim(value.pixels) != 3 or min(np.shape(value.pixels)) < 1:
                 raise SceneError(f"{what}: an image must be (h, w, 3), got {np.shape(value.pixels)}")
@@ -68,12 +58,15 @@ class Palette:
         return [*reflectance(value, what).tolist(), -1.0]
 
     def materials(self) -> Any:
-        """The record `scene.materials`."""
-        rows = np.array(self._rows or [[0.0, 0, 0, -1, 0, 0, 0, 1]], np.float64)
+        """The record `scene.materials`, compiled for the kinds that occur."""
+        rows = np.array(self._rows or [row(k.DIFFUSE, [0.0, 0.0, 0.0, -1.0])], np.float64)
         textures = self._textures() if self._bitmaps else m.NoTextures()
-        if self.glossy:
-            return m.PhongMaterials(View(rows), textures)
-        return m.DiffuseMaterials(View(rows[:, :4]), textures)
+        present = {int(kind) for kind in rows[:, k.KIND]}
+        if present == {k.DIFFUSE}:
+            return m.DiffuseMaterials(View(rows[:, : k.SPECULAR]), textures)
+        if present <= {k.DIFFUSE, k.PHONG}:
+            return m.PhongMaterials(View(rows[:, : k.KIND]), textures)
+        return m.AnyMaterials(View(rows), textures, k.Kinds(**dict(k.RECORDS[kind] for kind in present - {k.DIFFUSE})))
 
     def _textures(self) -> m.Textures:
         sheets, maps, first = [], [], 0
@@ -84,6 +77,58 @@ class Palette:
             first += width * height
         texels = np.concatenate([b.pixels.reshape(-1, 3) for b in self._bitmaps]).astype(np.float32)
         return m.Textures(View(np.array(sheets, np.int64)), View(np.stack(maps)), View(texels))
+
+
+# --- one row for each kind ---
+
+BLACK = [0.0, 0.0, 0.0, -1.0]
+
+
+def row(kind: int, colour: list[float], specular: Any = (0, 0, 0), exponent: float = 1.0, *more: float) -> list[float]:
+    """All columns of a material (`raylab.kinds`), `more` from PARAMETERS on."""
+    columns = [*colour, *map(float, specular), float(exponent), float(kind), *map(float, more)]
+    return columns + [0.0] * (k.ROW - len(columns))
+
+
+def _diffuse(palette: Palette, material: d.Diffuse) -> list[float]:
+    return row(k.DIFFUSE, palette.colour(material.reflectance, "diffuse reflectance"))
+
+
+def _phong(palette: Palette, material: d.Phong) -> list[float]:
+    """A black lobe makes it diffuse."""
+    if not (0.0 <= material.exponent <= 1e9):
+        raise SceneError(f"phong: exponent must be in [0, 1e9], got {material.exponent}")
+    diffuse = palette.colour(material.diffuse_reflectance, "phong diffuse_reflectance")
+    specular = reflectance(material.specular_reflectance, "phong specular_reflectance")
+    value = material.diffuse_reflectance
+    brightest = value.pixels.max(axis=(0, 1)) if isinstance(value, d.Bitmap) else np.asarray(value)
+    if np.max(brightest + specular) > 1.0 + 1e-9:
+        raise SceneError(f"phong: diffuse and specular reflectance add up to more than 1: {brightest} and {specular}")
+    return row(k.PHONG if specular.max() > 0.0 else k.DIFFUSE, diffuse, specular, material.exponent)
+
+
+def _conductor(palette: Palette, material: d.Conductor) -> list[float]:
+    eta, absorption = (index(v, f"conductor {n}") for n, v in (("eta", material.eta), ("k", material.k)))
+    specular = reflectance(material.specular_reflectance, "conductor specular_reflectance")
+    return row(k.CONDUCTOR, BLACK, specular, 1.0, *eta, *absorption)
+
+
+def _dielectric(palette: Palette, material: d.Dielectric) -> list[float]:
+    for name, value in (("int_ior", material.int_ior), ("ext_ior", material.ext_ior)):
+        if not 0.0 < value <= LARGEST_INDEX:
+            raise SceneError(f"dielectric: {name} must be greater than 0, at most {LARGEST_INDEX:g}, got {value}")
+    specular = reflectance(material.specular_reflectance, "dielectric specular_reflectance")
+    transmittance = reflectance(material.specular_transmittance, "dielectric specular_transmittance")
+    return row(k.DIELECTRIC, BLACK, specular, 1.0, material.int_ior / material.ext_ior, *transmittance)
+
+
+ROWS: dict[type, Callable[[Palette, Any], list[float]]] = {
+    d.Diffuse: _diffuse,
+    d.Phong: _phong,
+    d.Conductor: _conductor,
+    d.Dielectric: _dielectric,
+}
+LARGEST_INDEX = 1e6
 
 
 def reflectance(value: Any, what: str) -> npt.NDArray[np.float64]:
@@ -97,4 +142,16 @@ def reflectance(value: Any, what: str) -> npt.NDArray[np.float64]:
     if bad.any():
         where = f" at {tuple(int(i) for i in np.argwhere(bad)[0])}" if rgb.ndim > 1 else ""
         raise SceneError(f"{what} must lie in [0, 1], got {rgb[bad][0]}{where}")
+    return rgb
+
+
+def index(value: Any, what: str) -> npt.NDArray[np.float64]:
+    """A part of a refractive index for each colour; SceneError unless it is in [0, LARGEST_INDEX]."""
+    rgb = np.asarray(value, np.float64)
+    if rgb.shape not in ((), (3,)):
+        raise SceneError(f"{what} must be one number or an RGB triple, got shape {rgb.shape}")
+    rgb = np.array(np.broadcast_to(rgb, 3))
+    bad = ~((rgb >= 0.0) & (rgb <= LARGEST_INDEX))
+    if bad.any():
+        raise SceneError(f"{what} must lie in [0, {LARGEST_INDEX:g}], got {rgb[bad][0]}")
     return rgb

@@ -215,7 +215,8 @@ def half_extents(camera: d.Camera) -> tuple[float, float]:
 
 
 FEATURES = (
-    "area lights", "point lights", "directional lights", "environment", "glossy BRDF", "textures",
+    "area lights", "point lights", "directional lights", "environment", "glossy BRDF", "mirrors and glass",
+    "textures",
     "smooth normals", "spheres, disks and cylinders", "lens", "motion",
 )  # fmt: skip
 
@@ -229,6 +230,7 @@ def features(scene: Scene, builder: _Builder) -> frozenset[str]:
         "directional lights": len(data.suns) > 0,
         "environment": data.environment.present(),
         "glossy BRDF": data.materials.glossy(),
+        "mirrors and glass": data.materials.smooth(),
         "textures": builder.palette.textured,
         "smooth normals": data.normals.present(),
         "spheres, disks and cylinders": bool(builder.quads),

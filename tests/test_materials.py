@@ -13,7 +13,9 @@ from raylab import materials as m
 from raylab.brdf import Lambertian, Phong
 from raylab.errors import SceneError
 from raylab.jit import njit
+from raylab.kinds import Absent
 from raylab.palette import Palette
+from raylab.smooth import Conductor, Dielectric
 from raylab.vec3 import Vec3
 
 N = unit(0.0, 0.6, 0.8)
@@ -195,5 +197,103 @@ BAD = [
 
 @pytest.mark.parametrize(("material", "message"), BAD)
 def test_what_is_no_material_is_refused(material, message):
+    with pytest.raises(SceneError, match=message):
+        Palette().number(material)
+
+
+# --- mirrors and glass: one kind of BRDF for all surfaces of a scene ---
+
+
+GLASS = d.Dielectric(1.5, 1.0, np.array([0.9, 0.8, 0.7]), np.array([0.3, 0.4, 0.5]))
+GOLD = d.Conductor(np.array([0.2, 0.4, 1.3]), np.array([3.9, 2.4, 1.9]), np.array([1.0, 0.9, 0.8]))
+SHINY = d.Phong(np.array([0.1, 0.2, 0.3]), np.array([0.4, 0.5, 0.6]), 25.0)
+
+
+@njit
+def answers(brdf, V, L, N, u):
+    w, p = brdf.sample(V, N, u)
+    r, t = brdf.refraction(V, N)
+    kinds = brdf.is_glossy(), brdf.is_specular()
+    return kinds, brdf.eval(V, L), w, p, brdf.pdf(V, L, N), brdf.reflection(V, N), r, t
+
+
+@njit
+def answers_at(materials, material, V, L, N, u):
+    return answers(materials.at(material, N, (0.0, 0.0)), V, L, N, u)
+
+
+def numbers_in(answer):
+    """All numbers of an answer, in one row."""
+    return np.concatenate([[*part] if isinstance(part, (Vec3, tuple)) else [part] for part in answer]).astype(float)
+
+
+def everything():
+    palette = Palette()
+    numbers = [palette.number(x) for x in (d.Diffuse(), SHINY, GOLD, GLASS, GLASS.inside)]
+    return palette.materials(), numbers
+
+
+def test_any_brdf_answers_as_the_brdf_of_its_kind():
+    table, numbers = everything()
+    assert isinstance(table, m.AnyMaterials)
+    assert table.glossy()
+    assert table.smooth()
+    alone = [
+        Lambertian(Vec3(*np.full(3, 0.5 / math.pi))),
+        Phong(Vec3(*SHINY.diffuse_reflectance / math.pi), Vec3(*SHINY.specular_reflectance), 25.0, N),
+        Conductor(Vec3(*GOLD.eta), Vec3(*GOLD.k), Vec3(*GOLD.specular_reflectance)),
+        Dielectric(1.5, Vec3(*GLASS.specular_reflectance), Vec3(*GLASS.specular_transmittance)),
+        Dielectric(1.0 / 1.5, Vec3(*GLASS.specular_reflectance), Vec3(*GLASS.specular_transmittance)),
+    ]
+    V, L = unit(0.3, 0.4, 0.9), unit(-0.3, 0.1, 0.8)
+    for number, brdf in zip(numbers, alone, strict=True):
+        for u in ((0.05, 0.3), (0.9, 0.7)):
+            found = answers_at(table, number, V, L, N, u)
+            expected = answers(brdf, V, L, N, u)
+            assert found[0] == expected[0]
+            assert numbers_in(found) == pytest.approx(numbers_in(expected), rel=4 * U53)
+
+
+def test_light_sampling_finds_a_smooth_surface_black():
+    table, numbers = everything()
+    V = unit(0.3, 0.4, 0.9)
+    for number in numbers[2:]:
+        (glossy, specular), f, w, p, pdf, *_ = answers_at(table, number, V, V, N, (0.3, 0.3))
+        assert (glossy, specular) == (False, True)
+        assert (f, pdf) == (Vec3(0, 0, 0), 0.0)
+        assert p > 0.0  # what is black is divided by it
+        assert array(w) == pytest.approx(2 * (array(N) @ array(V)) * array(N) - array(V), abs=4 * U53)
+
+
+def test_kinds_that_a_scene_lacks_are_absent():
+    palette = Palette()
+    for material in (d.Diffuse(), GOLD):
+        palette.number(material)
+    table = palette.materials()
+    assert isinstance(table.kinds.phong, Absent)
+    assert isinstance(table.kinds.dielectric, Absent)
+    assert not table.glossy()
+    assert table.smooth()
+
+
+def test_glass_from_within_is_the_same_boundary():
+    assert (GLASS.inside.int_ior, GLASS.inside.ext_ior) == (GLASS.ext_ior, GLASS.int_ior)
+    assert GLASS.inside.specular_transmittance is GLASS.specular_transmittance
+
+
+BAD_SMOOTH = [
+    (d.Conductor(eta=np.array([0.2, -0.1, 0.2])), r"conductor eta must lie in \[0, 1e\+06\], got -0.1"),
+    (d.Conductor(k=np.array([1.0, np.nan, 1.0])), r"conductor k must lie in .* got nan"),
+    (d.Conductor(k=np.ones(4)), r"conductor k must be one number or an RGB triple, got shape \(4,\)"),
+    (d.Conductor(specular_reflectance=np.full(3, 1.5)), r"conductor specular_reflectance must lie in \[0, 1\]"),
+    (d.Dielectric(int_ior=0.0), r"dielectric: int_ior must be greater than 0, at most 1e\+06, got 0.0"),
+    (d.Dielectric(ext_ior=-1.0), "dielectric: ext_ior must be greater than 0"),
+    (d.Dielectric(int_ior=math.inf), "int_ior"),
+    (d.Dielectric(specular_transmittance=np.full(3, -1.0)), r"specular_transmittance must lie in \[0, 1\]"),
+]
+
+
+@pytest.mark.parametrize(("material", "message"), BAD_SMOOTH)
+def test_what_is_no_mirror_and_no_glass_is_refused(material, message):
     with pytest.raises(SceneError, match=message):
         Palette().number(material)
