@@ -20,7 +20,7 @@ import raylab
 from raylab import description as d
 from raylab.closed_forms import irradiance as forms
 from raylab.closed_forms import phong, variances
-from raylab.quadrature import frame
+from raylab.ladders import frame
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a quarter of a million samples each")
 

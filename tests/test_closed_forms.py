@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from raylab import quadrature
 from raylab.closed_forms import irradiance as forms
 from raylab.closed_forms import phong, variances
+from raylab.ladders import frame
 
 Z = np.array([0.0, 0.0, 1.0])
 TRIANGLE = np.array([(-0.3, -0.5, 0.6), (0.9, -0.1, 1.1), (0.1, 0.8, 0.7)])
@@ -152,7 +152,7 @@ def test_sphere_is_the_integral_over_its_cone(cosine):
 def test_skies_are_integrals_over_the_hemisphere():
     half = 0.5 * math.pi
     b = np.array([0.3, -0.2, 0.5])
-    s, t, n = quadrature.frame(N)
+    s, t, n = frame(N)
 
     def gradient(theta, phi):
         w = math.sin(theta) * (math.cos(phi) * s + math.sin(phi) * t) + math.cos(theta) * n
@@ -227,46 +227,6 @@ def test_polygon_moments_clip_at_both_horizons():
     exact = over_polygon(UPRIGHT, Z, lambda w: max(0.0, r @ w) ** 3)
     assert agrees(phong.polygon_moments(UPRIGHT, 3, r)[1], exact)
     assert phong.polygon_moments(CENTRED, 3, -Z) == (0.0, 0.0)
-
-
-# --- the slides' sums ---
-
-
-def test_sums_over_a_light_converge_to_the_integral():
-    """Step 3 with m x m parts: the error falls with 1/m^2, so that doubling m quarters it."""
-    exact = float(forms.polygon(CENTRED))
-    corner, e1, e2 = (-1.0, -0.5, 1.0), (0.0, 1.0, 0.0), (2.0, 0.0, 0.0)
-    errors = [quadrature.parallelogram_source((0, 0, 0), Z, corner, e1, e2, 1.0, 1.0, m) - exact for m in (16, 32, 64)]
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.01)
-    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.01)
-    assert quadrature.parallelogram_source((0, 0, 0), Z, corner, e2, e1, 1.0, 1.0, 4) == 0.0  # it shines upwards
-
-
-def test_sums_over_directions_converge_to_the_integral():
-    b = np.array([0.3, -0.2, 0.5])
-    exact = float(forms.gradient_sky(1.1, b, N))
-    errors = [quadrature.environment(N, lambda w: 1.1 + w @ b, 1.0, m) - exact for m in (16, 32, 64)]
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.01)
-    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.01)
-
-
-def test_sums_take_any_brdf():
-    r = np.array([0.36, 0.48, 0.8])
-    lobe = quadrature.parallelogram_source(
-        (0, 0, 0), Z, CENTRED[0], (0, 1, 0), (2, 0, 0), 2.0, lambda w: (w @ r).clip(0.0) ** 7, 256
-    )
-    assert lobe == pytest.approx(2.0 * phong.polygon_moments(CENTRED, 7, r)[1], rel=1e-4)
-
-
-def test_steps_1_and_2():
-    """I k_d cos / r^2 with I = 5 at (1, 2, 2), k_d = 0.4; I k_d cos with I = 3 from (0.6, 0, 0.8)."""
-    assert quadrature.point_source((0, 0, 0), Z, (1.0, 2.0, 2.0), 5.0, 0.4) == pytest.approx(4.0 / 27.0, rel=1e-15)
-    assert 2.0 * forms.point_light((1.0, 2.0, 2.0)) == pytest.approx(4.0 / 27.0, rel=1e-15)
-    assert quadrature.directional_source(Z, (0.6, 0.0, 0.8), 3.0, 0.4) == pytest.approx(0.96, rel=1e-15)
-    assert 1.2 * forms.directional_light((0.6, 0.0, 0.8)) == pytest.approx(0.96, rel=1e-15)
-    assert quadrature.small_angle_source(Z, (0.6, 0.0, 0.8), 0.01, 3.0, 0.4) == pytest.approx(0.0096, rel=1e-15)
-    facing = quadrature.small_area_source((0, 0, 0), Z, (0.0, 0.0, 2.0), (0.0, 0.0, -1.0), 0.01, 3.0, 0.4)
-    assert facing == pytest.approx(0.003, rel=1e-15)
 
 
 # --- variances: integral of f^2 / p minus the square of the mean, in z = cos(theta) ---

@@ -131,13 +131,16 @@ def _panel(drawn: Any, panel: Panel, left: int, top: int, scale: int, full: Arra
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """Points of one line of a log-log plot; `fitted` writes the slope of least squares behind the label."""
+    """Points of one line of a log-log plot; `fitted` writes the slope of least squares behind the label.
+
+    The fit leaves out points with x below `fit_from`, where the power law has not begun.
+    """
 
     label: str
     x: npt.ArrayLike
     y: npt.ArrayLike
     fitted: bool = True
-    marker: str = ""
+    fit_from: float = 0.0
 
 
 def slope(x: npt.ArrayLike, y: npt.ArrayLike) -> float:
@@ -171,9 +174,12 @@ def power_laws(axes: Any, lines: Sequence[Line], slopes: Sequence[float] = ()) -
     ends = []
     for line, colour, marker in zip(lines, _endless(COLOURS), _endless(tuple(MARKERS.values())), strict=False):
         x, y = np.asarray(line.x, float), np.asarray(line.y, float)
-        axes.plot(x, y, color=colour, marker=line.marker or marker)
-        text = f"{line.label}  (slope {slope(x, y):.2f})".replace("(slope -", f"(slope {MINUS}")
-        ends.append((float(x[-1]), float(y[-1]), text if line.fitted else line.label, colour))
+        axes.plot(x, y, color=colour, marker=marker)
+        text = line.label
+        if line.fitted:
+            kept = x >= line.fit_from
+            text += f"  (slope {slope(x[kept], y[kept]):.2f})".replace("-", MINUS)
+        ends.append((float(x[-1]), float(y[-1]), text, colour))
     low, high = axes.get_ylim()
     left, right = (f(float(f(np.asarray(line.x, float))) for line in lines) for f in (min, max))  # type: ignore[operator]
     top = max(float(np.max(np.asarray(line.y, float))) for line in lines)
