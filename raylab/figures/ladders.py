@@ -74,7 +74,7 @@ def over_the_light(path: Path, title: str, f_r: ladders.Function, truth: float) 
 )
 def ladder_area_diffuse(path: Path) -> None:
     over_the_light(
-        path, "A rectangle 2 × 1 at height 1, Lambertian floor", K_D, float(irradiance.polygon(CORNERS)) * K_D
+        path, "A rectangle 2 by 1 at height 1, Lambertian floor", K_D, float(irradiance.polygon(CORNERS)) * K_D
     )
 
 
@@ -86,7 +86,7 @@ def ladder_area_diffuse(path: Path) -> None:
 )
 def ladder_area_brdf(path: Path) -> None:
     truth = phong.polygon(CORNERS, EXPONENT, R)
-    over_the_light(path, "A rectangle 2 × 1 at height 1, Phong lobe n = 20", lobe(R), truth)
+    over_the_light(path, "A rectangle 2 by 1 at height 1, Phong lobe n = 20", lobe(R), truth)
 
 
 def sun_places() -> Array:
