@@ -45,6 +45,7 @@ TABLE = (
     Slide(
         "Illumination as integration (Lambertian, over the light)",
         (
+            "raylab.shade.point_light",
             "raylab.ladders.point_source",
             "raylab.ladders.small_area_source",
             "raylab.ladders.area_sources",
@@ -60,6 +61,7 @@ TABLE = (
     Slide(
         "Illumination as integration (any BRDF, over the light)",
         (
+            "raylab.shade.point_light",
             "raylab.ladders.point_source",
             "raylab.ladders.small_area_source",
             "raylab.ladders.area_sources",
@@ -75,6 +77,7 @@ TABLE = (
     Slide(
         "Illumination as integration (Lambertian, over directions)",
         (
+            "raylab.shade.directional_light",
             "raylab.ladders.directional_source",
             "raylab.ladders.small_solid_angle",
             "raylab.ladders.solid_angles",
@@ -93,6 +96,7 @@ TABLE = (
     Slide(
         "Illumination as integration (any BRDF, over directions)",
         (
+            "raylab.shade.directional_light",
             "raylab.ladders.directional_source",
             "raylab.ladders.small_solid_angle",
             "raylab.ladders.solid_angles",
