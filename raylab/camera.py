@@ -1,4 +1,4 @@
-"""Eye rays: through a random point of each pixel's filter, from a pinhole.
+"""Eye rays: through a random point of each pixel's filter, from a pinhole or from a random point of an aperture.
 
 A sample of a pixel is drawn from the pixel filter itself (importance sampling), so it counts fully and for this
 pixel alone: pixels stay independent, and the standard error of each is its own.
@@ -15,8 +15,9 @@ from raylab.description import Filter
 from raylab.embree import TNEAR
 from raylab.jit import njit
 from raylab.record import record
+from raylab.sampling import sample_concentric_disk, sample_triangle
 from raylab.surface import round32
-from raylab.vec3 import Vec3, length
+from raylab.vec3 import Vec3, dot, length
 from raylab.view import View
 
 
@@ -103,3 +104,73 @@ class Pinhole(NamedTuple):
         if self.skip > 0.0:
             start = max(start, self.skip / length(d))
         return round32(self.origin + d * start), round32(d), max(TNEAR, self.far - start)
+
+
+# --- apertures ---
+
+
+@record
+class DiskAperture(NamedTuple):
+    """A round opening of the given radius."""
+
+    radius: float
+
+    def sample(self, u):
+        x, y = sample_concentric_disk(u)
+        return self.radius * x, self.radius * y
+
+
+@record
+class PolygonAperture(NamedTuple):
+    """A convex opening: triangles of equal area from the centre to `corners` (n + 1, 2), the last as the first."""
+
+    corners: View
+
+    def sample(self, u):
+        sectors = len(self.corners) - 1
+        k = min(int(u[0] * sectors), sectors - 1)
+        b1, b2 = sample_triangle((u[0] * sectors - k, u[1]))
+        x = b1 * self.corners[k, 0] + b2 * self.corners[k + 1, 0]
+        return x, b1 * self.corners[k, 1] + b2 * self.corners[k + 1, 1]
+
+
+def make_aperture(radius: float, blades: int, rotation: float) -> Any:
+    """A disk, or the regular polygon of the same area, which keeps the amount of blur; `rotation` in degrees."""
+    if blades == 0:
+        return DiskAperture(radius)
+    to_corner = radius * math.sqrt(2.0 * math.pi / (blades * math.sin(2.0 * math.pi / blades)))
+    turn = math.radians(rotation) + 2.0 * math.pi / blades * np.arange(blades + 1)
+    return PolygonAperture(View(to_corner * np.column_stack([np.cos(turn), np.sin(turn)])))
+
+
+@record
+class ThinLens(NamedTuple):
+    """Slide "Depth of field": eye rays start at random points on the aperture, toward a point on the focus plane.
+
+    With `toward` of depth 1 from the lens centre, the focus point is f toward and the aperture point a, so the ray is
+    (f toward - a) / f = toward - a / f: `power` = 1 / f may be 0, focus at infinity.
+    """
+
+    origin: Vec3
+    corner: Vec3
+    across: Vec3
+    down: Vec3
+    near: float
+    far: float
+    left: Vec3
+    up: Vec3
+    aperture: Any
+    power: float
+    filter: Any
+
+    def ray(self, column, row, rng):
+        dx, dy = self.filter.sample(rng.square())
+        toward = self.corner + self.across * (column + 0.5 + dx) + self.down * (row + 0.5 + dy)
+        x, y = self.aperture.sample(rng.square())
+        a = self.left * x + self.up * y
+        d = toward - a * self.power
+        o = self.origin + a
+        start = self.near
+        if dot(o, o) > 4.0:  # nothing can be hit before, see Pinhole.skip
+            start = max(start, (length(o) - 2.0) / length(d))
+        return round32(o + d * start), round32(d), max(TNEAR, self.far - start)

@@ -196,7 +196,12 @@ class Filter:
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A perspective camera at the local origin that looks along local +z with +y up and +x to the left."""
+    """A perspective camera at the local origin that looks along local +z with +y up and +x to the left.
+
+    With an `aperture_radius` it has a thin lens: a disk, or a regular polygon of the same area with `aperture_blades`
+    sides and its first corner `aperture_rotation` degrees from local +x. What lies at the depth `focus_distance` is
+    sharp.
+    """
 
     to_world: Array = field(default_factory=_identity)
     fov: float = 45.0  # degrees, along `fov_axis`
@@ -204,6 +209,10 @@ class Camera:
     near_clip: float = 1e-2
     far_clip: float = 1e4
     principal_point_offset: tuple[float, float] = (0.0, 0.0)
+    aperture_radius: float = 0.0
+    focus_distance: float = 1e4  # measured along the axis; may be inf
+    aperture_blades: int = 0
+    aperture_rotation: float = 0.0
     width: int = 256
     height: int = 256
     filter: Filter = field(default_factory=Filter)

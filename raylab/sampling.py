@@ -139,6 +139,69 @@ def invert_disk(x, y):
     return x * x + y * y, turn(y, x)
 
 
+# --- disk, keeping squares compact: a lens ---
+
+
+@njit
+def sample_concentric_disk(u):
+    """A point uniform over the unit disk: concentric squares become circles.
+
+    Source: Shirley and Chiu 1997, "A low distortion map between disk and square".
+    """
+    a, b = 2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0
+    if abs(a) > abs(b):
+        sine, cosine = sin_cos_eighth(PI / 4.0 * (b / a))
+        return a * cosine, a * sine
+    if b == 0.0:
+        return 0.0, 0.0
+    sine, cosine = sin_cos_eighth(PI / 4.0 * (a / b))
+    return b * sine, b * cosine
+
+
+@njit
+def sin_cos_eighth(x):
+    """sin and cos for |x| <= pi / 4 by their series, which costs a fraction of a library call.
+
+    The first terms left out, x^17 / 17! and x^18 / 18!, are below 2^-54.
+    """
+    y = x * x
+    s = 1.0 - y * (1.0 / 210.0)  # x^15 / 15! over x^13 / 13!
+    s = 1.0 - y * (1.0 / 156.0) * s
+    s = 1.0 - y * (1.0 / 110.0) * s
+    s = 1.0 - y * (1.0 / 72.0) * s
+    s = 1.0 - y * (1.0 / 42.0) * s
+    s = 1.0 - y * (1.0 / 20.0) * s
+    s = 1.0 - y * (1.0 / 6.0) * s
+    c = 1.0 - y * (1.0 / 240.0)  # x^16 / 16! over x^14 / 14!
+    c = 1.0 - y * (1.0 / 182.0) * c
+    c = 1.0 - y * (1.0 / 132.0) * c
+    c = 1.0 - y * (1.0 / 90.0) * c
+    c = 1.0 - y * (1.0 / 56.0) * c
+    c = 1.0 - y * (1.0 / 30.0) * c
+    c = 1.0 - y * (1.0 / 12.0) * c
+    return x * s, 1.0 - y * (1.0 / 2.0) * c
+
+
+@njit
+def pdf_concentric_disk(x, y):
+    """p = 1 / pi inside, 1/area."""
+    return 1.0 / PI if x * x + y * y <= 1.0 else 0.0
+
+
+@njit
+def invert_concentric_disk(x, y):
+    r = math.sqrt(x * x + y * y)
+    if r == 0.0:
+        return 0.5, 0.5
+    if abs(x) > abs(y):
+        a = math.copysign(r, x)
+        b = a * math.atan(y / x) * 4.0 / PI
+    else:
+        b = math.copysign(r, y)
+        a = b * math.atan(x / y) * 4.0 / PI
+    return 0.5 * (a + 1.0), 0.5 * (b + 1.0)
+
+
 # --- triangle ---
 
 

@@ -8,7 +8,6 @@ intensity of a point light, W/sr, is scaled with the square.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -16,14 +15,13 @@ import numpy.typing as npt
 
 from raylab import description as d
 from raylab import quadrics
-from raylab.camera import Pinhole, make_filter
 from raylab.embree import EmbreeScene
 from raylab.emitters import AreaLights, colour, point_table, sun_table
-from raylab.errors import SceneError
 from raylab.geometry import MeshArrays, Placement, QuadricArrays, gather, quadric_box, quadric_row
 from raylab.palette import Palette
 from raylab.point import plane_table
 from raylab.record import Table
+from raylab.sensor import has_lens, make_camera
 from raylab.sky import make_environment
 from raylab.surface import (
     SHAPE_COLUMNS,
@@ -39,7 +37,6 @@ from raylab.surface import (
     SmoothNormals,
 )
 from raylab.triangles import CHUNK
-from raylab.vec3 import Vec3
 from raylab.view import View
 
 
@@ -60,7 +57,7 @@ class Scene:
         builder = _Builder(self.placement, meshes, quads)
         self.embree = builder.embree
         self.data = builder.data(description)
-        self.camera = pinhole(description.camera, self.placement)
+        self.camera = make_camera(description.camera, self.placement)
         self.features = features(self, builder)
 
     def __repr__(self) -> str:
@@ -165,55 +162,6 @@ class _Builder:
         return Emission(View(np.stack([black if s.radiance is None else colour(s.radiance, s.name) for s in shapes])))
 
 
-def pinhole(camera: d.Camera, placement: Placement) -> Pinhole:
-    """The camera record in normalised coordinates; SceneError for a camera that sees nothing."""
-    check_camera(camera)
-    matrix = np.asarray(camera.to_world, np.float64)
-    tan_x, tan_y = half_extents(camera)
-    offset_x, offset_y = camera.principal_point_offset
-    left, up, forward = (matrix[:3, k] / np.linalg.norm(matrix[:3, k]) for k in range(3))
-    corner = forward + left * tan_x * (1.0 - 2.0 * offset_x) + up * tan_y * (1.0 - 2.0 * offset_y)
-    across, down = left * (-2.0 * tan_x / camera.width), up * (-2.0 * tan_y / camera.height)
-    origin = placement.points(matrix[:3, 3])
-    return Pinhole(
-        origin=Vec3(*origin),
-        corner=Vec3(*corner),
-        across=Vec3(*across),
-        down=Vec3(*down),
-        near=camera.near_clip * placement.scale,
-        far=camera.far_clip * placement.scale,
-        skip=max(0.0, float(np.linalg.norm(origin)) - 2.0),
-        filter=make_filter(camera.filter),
-    )
-
-
-def check_camera(camera: d.Camera) -> None:
-    if camera.width < 1 or camera.height < 1:
-        raise SceneError(f"camera: the film must have at least one pixel, got {camera.width} x {camera.height}")
-    if not 0.0 < camera.fov < 180.0:
-        raise SceneError(f"camera: fov must be between 0 and 180 degrees, got {camera.fov}")
-    if not 0.0 <= camera.near_clip < camera.far_clip:
-        raise SceneError(f"camera: expected 0 <= near_clip < far_clip, got {camera.near_clip}, {camera.far_clip}")
-    matrix = np.asarray(camera.to_world)
-    if matrix.shape != (4, 4) or not np.all(np.isfinite(matrix)) or abs(np.linalg.det(matrix[:3, :3])) < 1e-12:
-        raise SceneError(f"camera: to_world must be a finite, invertible (4, 4) matrix, got\n{matrix}")
-    if not (camera.filter.radius > 0.0 and camera.filter.stddev > 0.0):
-        raise SceneError(f"camera: the pixel filter needs a positive radius, got {camera.filter}")
-
-
-def half_extents(camera: d.Camera) -> tuple[float, float]:
-    """Tangents of half the field of view, across and down."""
-    tangent, aspect = math.tan(math.radians(camera.fov) / 2.0), camera.width / camera.height
-    axis = camera.fov_axis
-    if axis == "diagonal":
-        return tangent * aspect / math.hypot(aspect, 1.0), tangent / math.hypot(aspect, 1.0)
-    if axis == "smaller":
-        axis = "y" if aspect > 1.0 else "x"
-    elif axis == "larger":
-        axis = "x" if aspect > 1.0 else "y"
-    return (tangent, tangent / aspect) if axis == "x" else (tangent * aspect, tangent)
-
-
 FEATURES = (
     "area lights", "point lights", "directional lights", "environment", "glossy BRDF", "mirrors and glass",
     "textures",
@@ -234,5 +182,6 @@ def features(scene: Scene, builder: _Builder) -> frozenset[str]:
         "textures": builder.palette.textured,
         "smooth normals": data.normals.present(),
         "spheres, disks and cylinders": bool(builder.quads),
+        "lens": has_lens(scene.description.camera),
     }
     return frozenset(name for name, there in present.items() if there)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 import raylab
 from raylab.closed_forms import irradiance as forms
-from raylab.scene import half_extents
+from raylab.sensor import half_extents
 
 Array = npt.NDArray[np.float64]
 UP = np.array([0.0, 1.0, 0.0])

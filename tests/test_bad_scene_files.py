@@ -34,6 +34,11 @@ def texture(inside: str) -> str:
     return f'<texture type="bitmap"><string name="filename" value="half.exr"/>\n{inside}</texture>'
 
 
+def thin_lens(*floats: str) -> str:
+    values = "\n".join(f'<{kind} name="{name}" value="{value}"/>' for kind, name, value in map(str.split, floats))
+    return f'<sensor type="thinlens">\n{values}</sensor>'
+
+
 # The body starts in line 2 of the file: `line` counts from there. Then what the message must name.
 CASES = [
     # unknown words
@@ -42,7 +47,7 @@ CASES = [
     (2, '<bsdf type="conducter"/>', '<bsdf type="conducter">: unknown bsdf', "diffuse, phong, twosided"),
     (2, '<emitter type="directionel"/>', 'did you mean "directional"?'),
     (2, '<texture type="checkerboard"/>', "unknown texture", "bitmap"),
-    (2, '<sensor type="thinlens"/>', "unknown sensor", "perspective"),
+    (2, '<sensor type="orthographic"/>', "unknown sensor", "perspective", "thinlens"),
     (2, '<sensor type="perspective"><film type="specfilm"/></sensor>', '<film type="specfilm">: unknown film'),
     (2, '<sensor type="perspective"><sampler type="sobol"/></sensor>', "unknown sampler", "ldsampler"),
     (3, film('<rfilter type="mitchell"/>'), "unknown rfilter", "box, gaussian, tent"),
@@ -152,6 +157,19 @@ CASES = [
     (2, '<emitter type="directional"><vector name="direction" value="0"/></emitter>', "must not be zero"),
     (2, '<emitter type="point"><spectrum type="blackbody" name="intensity"><float name="temperature" value="-5"/></spectrum></emitter>',
      '"temperature" must be greater than 0'),
+    # lens
+    (2, '<sensor type="thinlens"/>', '<float name="aperture_radius"> is missing'),
+    (3, thin_lens("float aperture_radius -0.1"), '"aperture_radius" must not be negative, got -0.1'),
+    (3, thin_lens("float aperture_radius nan"), 'expected a finite number, got "nan"'),
+    (3, thin_lens("float aperture_radius inf"), 'expected a finite number, got "inf"'),
+    (4, thin_lens("float aperture_radius 0.1", "float focus_distance 0"), '"focus_distance" must be greater than 0, got 0'),
+    (4, thin_lens("float aperture_radius 0.1", "float focus_distance -2"), "greater than 0, got -2"),
+    (4, thin_lens("float aperture_radius 0.1", "float focus_distance nan"), 'expected a finite number, got "nan"'),
+    (4, thin_lens("float aperture_radius 0.1", "float focus_distance -inf"), 'expected a finite number, got "-inf"'),
+    (4, thin_lens("float aperture_radius 0.1", "integer aperture_blades 2"), "0, a disk, or at least 3, got 2"),
+    (4, thin_lens("float aperture_radius 0.1", "integer aperture_blades -5"), '"aperture_blades" must be from 0'),
+    (4, thin_lens("float aperture_radius 0.1", "float principal_point_offset_x 0.1"), 'no parameter "principal_point'),
+    (2, '<sensor type="perspective"><float name="aperture_radius" value="1"/></sensor>', 'no parameter "aperture_radius"'),
     # transforms
     (3, to_world('<scale value="0"/>'), "<scale>", "singular"),
     (3, to_world('<scale x="2" y="0"/>'), "<scale>", "singular"),

@@ -15,7 +15,7 @@ from raylab import description as d
 from raylab.errors import SceneError
 from raylab.geometry import Placement
 from raylab.jit import njit
-from raylab.scene import pinhole
+from raylab.sensor import make_camera as pinhole
 from raylab.vec3 import Vec3
 
 U24 = 2.0**-24  # rounding unit of float32

@@ -168,3 +168,14 @@ def test_sky_texture_and_smooth_normals(mitsuba, tmp_path):
     files = {"board": "still_life/board.png", "knot": "hdr_sky/knot.ply", "sky": "hdr_sky/sky.exr"}
     path.write_text(SKY.format(**{name: SCENES / file for name, file in files.items()}))
     agree(mitsuba, path, spp=256)
+
+
+def test_thin_lens(mitsuba, tmp_path):
+    """The same scene out of focus, its clip planes within the scene."""
+    lens = """<float name="aperture_radius" value="0.25"/><float name="focus_distance" value="5.2"/>
+        <float name="near_clip" value="4.4"/><float name="far_clip" value="8"/>"""
+    text = SHAPES.format(filter="box").replace('"perspective"', '"thinlens"')
+    text = text.replace('<float name="principal_point_offset_x" value="0.05"/>', lens)
+    path = tmp_path / "lens.xml"
+    path.write_text(text)
+    agree(mitsuba, path, spp=256)

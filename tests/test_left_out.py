@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numba
@@ -60,6 +61,12 @@ def size(assembly: str) -> int:
     return sum(1 for line in assembly.splitlines() if line.startswith("\t") and not line.startswith("\t."))
 
 
+def through_lens(scene: Scene, aperture: float) -> Scene:
+    """The scene seen by a thin lens."""
+    eye = replace(scene.description.camera, aperture_radius=aperture, focus_distance=5.0)
+    return Scene(replace(scene.description, camera=eye))
+
+
 @pytest.fixture(scope="module")
 def code() -> dict[str, str]:
     """Kernels of scenes that have more and more, all rendered by `direct`."""
@@ -68,6 +75,7 @@ def code() -> dict[str, str]:
     return {
         "nothing": machine_code(dark),
         "lamp": machine_code(room(4)),
+        "lamp, lens": machine_code(through_lens(room(4), 0.1)),
         "constant sky": machine_code(outdoors(d.ConstantEnvironment(np.ones(3)), 4)),
         "image sky": machine_code(outdoors(d.ImageEnvironment(image), 4)),
         "glossy": machine_code(room(4, GLOSSY)),
@@ -81,6 +89,14 @@ def test_a_dark_scene_traces_no_shadow_rays(code):
 
 def test_a_lamp_brings_shadow_rays_and_nothing_else(code):
     assert calls(code["lamp"]) == {"rtcIntersect16", "rtcOccluded1"}
+
+
+def test_only_a_lens_brings_points_on_an_aperture(code):
+    assert size(code["lamp, lens"]) > size(code["lamp"])
+    assert calls(code["lamp, lens"]) == calls(code["lamp"])
+    closed = through_lens(room(4), 0.0)  # the same types, so the same kernel
+    assert numba.typeof(closed.camera) == numba.typeof(room(4).camera)
+    assert "lens" not in closed.features
 
 
 def test_a_sky_brings_directions(code):
@@ -113,8 +129,10 @@ def test_the_slide_alone_is_no_longer_than_direct():
         (Scene(d.SceneDescription(camera=camera(1), shapes=(d.Rectangle(to_world=moved(0, 0, 0, 9, 9, 1)),))), 2),
         (room(1, fov=0.1), 4),
         (outdoors(d.ConstantEnvironment(np.ones(3)), 1, fov=0.1), 4),
+        (through_lens(room(1, fov=0.1), 0.1), 6),
+        (through_lens(room(1, fov=0.1), 0.0), 4),
     ],
-    ids=["pixel", "pixel and lamp", "pixel and sky"],
+    ids=["pixel", "pixel and lamp", "pixel and sky", "pixel, lens and lamp", "pixel, closed lens and lamp"],
 )
 def test_no_dimension_is_spent_on_what_is_not_there(scene, dimensions):
     sampler = samplers.make("independent", 0, 1)
@@ -131,6 +149,7 @@ def test_features_are_what_the_scene_has():
     assert outdoors(d.ConstantEnvironment(np.ones(3)), 4).features == {"environment"}
     assert room(4, GLOSSY).features == {"area lights", "glossy BRDF"}
     assert room(4).features < set(FEATURES)
+    assert through_lens(room(4), 0.1).features == {"area lights", "lens"}
 
 
 PROBE = """

@@ -9,6 +9,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numba
@@ -38,6 +39,12 @@ def quadrics() -> Scene:
     )
 
 
+def through_lens(blades: int) -> Scene:
+    """The room through a thin lens."""
+    eye = replace(camera(4), aperture_radius=0.2, focus_distance=4.0, aperture_blades=blades, aperture_rotation=10.0)
+    return Scene(replace(room(4).description, camera=eye))
+
+
 def scenes() -> dict[str, tuple[Scene, str, str]]:
     image = np.random.default_rng(3).random((6, 12, 3))
     texture = d.Diffuse(d.Bitmap(np.random.default_rng(4).random((3, 5, 3))))
@@ -55,6 +62,8 @@ def scenes() -> dict[str, tuple[Scene, str, str]]:
         "image": (outdoors(d.ImageEnvironment(image), 4, GLOSSY), "direct", "independent"),
         "brightness": (outdoors(d.ImageEnvironment(image, filter="nearest"), 4), "env_brightness", "independent"),
         "quadrics": (quadrics(), "direct", "independent"),
+        "lens": (through_lens(0), "area", "sobol"),
+        "lens with blades": (through_lens(5), "area", "stratified"),
         "texture and sun": (Scene(sun), "direct", "independent"),
     }
 

@@ -39,6 +39,34 @@ class Film:
 
 
 def _perspective(node: Node, context: Context) -> tuple[Camera, Sampling | None]:
+    """A pinhole; a focus distance means nothing to it."""
+    node.ask("focus_distance", ("float", "integer"), 0.0)
+    offset = tuple(node.number(f"principal_point_offset_{c}", 0.0) for c in "xy")
+    return _camera(node, context, principal_point_offset=(offset[0], offset[1]))
+
+
+def _thinlens(node: Node, context: Context) -> tuple[Camera, Sampling | None]:
+    """Mitsuba's, and two additions for a polygonal aperture; focus at infinity is `inf`."""
+    radius = node.number("aperture_radius")
+    if radius < 0:
+        raise node.error(f'"aperture_radius" must not be negative, got {radius:g}', "aperture_radius")
+    focus = float(node.ask("focus_distance", ("float", "integer"), node.number("far_clip", 1e4)))
+    if not focus > 0:
+        raise node.error(f'"focus_distance" must be greater than 0, got {focus:g}', "focus_distance")
+    blades = node.integer("aperture_blades", 0, least=0, most=1000)
+    if blades in (1, 2):
+        raise node.error(f'"aperture_blades" must be 0, a disk, or at least 3, got {blades}', "aperture_blades")
+    return _camera(
+        node,
+        context,
+        aperture_radius=radius,
+        focus_distance=focus,
+        aperture_blades=blades,
+        aperture_rotation=node.number("aperture_rotation", 0.0),
+    )
+
+
+def _camera(node: Node, context: Context, **lens: Any) -> tuple[Camera, Sampling | None]:
     film_node, sampler_node = node.child("film"), node.child("sampler")
     film = context.read(film_node, FILMS) if film_node else Film(768, 576, _GAUSSIAN)
     to_world = node.transform("to_world", np.eye(4))
@@ -47,23 +75,18 @@ def _perspective(node: Node, context: Context) -> tuple[Camera, Sampling | None]
     fov, axis = _field_of_view(node)
     near = node.number("near_clip", 1e-2, above=0)
     far = node.number("far_clip", 1e4, above=near)
-    for name in (
-        "focus_distance",
-        "shutter_open",
-        "shutter_close",
-    ):  # nothing moves and nothing is out of focus
+    for name in ("shutter_open", "shutter_close"):  # nothing moves
         node.number(name, 0.0)
-    offset = tuple(node.number(f"principal_point_offset_{c}", 0.0) for c in "xy")
     camera = Camera(
         to_world=to_world,
         fov=fov,
         fov_axis=axis,
         near_clip=near,
         far_clip=far,
-        principal_point_offset=(offset[0], offset[1]),
         width=film.width,
         height=film.height,
         filter=film.filter,
+        **lens,
     )
     return camera, context.read(sampler_node, SAMPLERS) if sampler_node else None
 
@@ -142,7 +165,10 @@ def _sampler(name: SamplerName) -> Callable[[Node, Context], Sampling]:
     return read
 
 
-SENSORS: dict[str, Callable[[Node, Context], tuple[Camera, Sampling | None]]] = {"perspective": _perspective}
+SENSORS: dict[str, Callable[[Node, Context], tuple[Camera, Sampling | None]]] = {
+    "perspective": _perspective,
+    "thinlens": _thinlens,
+}
 FILMS: dict[str, Callable[[Node, Context], Film]] = {"hdrfilm": _hdrfilm}
 FILTERS: dict[str, Callable[[Node, Context], Filter]] = {"box": _box, "tent": _tent, "gaussian": _gaussian}
 SAMPLERS: dict[str, Callable[[Node, Context], Sampling]] = {

@@ -52,8 +52,13 @@ def coordinates(tag: Tag, default: float | None = None) -> Array:
     return np.array([number(tag, tag.attributes.get(key, str(default))) for key in "xyz"])
 
 
+MAY_BE_INFINITE = ("focus_distance",)
+
+
 def _float(tag: Tag) -> float:
     tag.check_attributes(("name", "value"))
+    if tag.attributes["name"] in MAY_BE_INFINITE and tag.attributes["value"].strip().lower() in ("inf", "infinity"):
+        return float("inf")
     return number(tag, tag.attributes["value"])
 
 

@@ -1,0 +1,107 @@
+"""From the described camera to the record that makes its eye rays."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from raylab import description as d
+from raylab.camera import Pinhole, ThinLens, make_aperture, make_filter
+from raylab.errors import SceneError
+from raylab.geometry import Placement
+from raylab.vec3 import Vec3
+
+Array = npt.NDArray[np.float64]
+
+
+def has_lens(camera: d.Camera) -> bool:
+    """Whether the aperture has a size; without one the camera is a pinhole, bit for bit."""
+    return camera.aperture_radius > 0.0
+
+
+def make_camera(camera: d.Camera, placement: Placement) -> Pinhole | ThinLens:
+    """The camera record in normalised coordinates; SceneError for a camera that sees nothing."""
+    check_camera(camera)
+    eye = pinhole(camera, placement)
+    if not has_lens(camera):
+        return eye
+    left, up, _ = axes(camera)
+    return ThinLens(
+        origin=eye.origin,
+        corner=eye.corner,
+        across=eye.across,
+        down=eye.down,
+        near=eye.near,
+        far=eye.far,
+        left=Vec3(*left),
+        up=Vec3(*up),
+        aperture=make_aperture(
+            camera.aperture_radius * placement.scale, camera.aperture_blades, camera.aperture_rotation
+        ),
+        power=1.0 / (camera.focus_distance * placement.scale),
+        filter=eye.filter,
+    )
+
+
+def axes(camera: d.Camera) -> Array:
+    """(3, 3): the unit vectors left, up and forward, one to a row."""
+    matrix = np.asarray(camera.to_world, np.float64)
+    return np.stack([matrix[:3, k] / np.linalg.norm(matrix[:3, k]) for k in range(3)])
+
+
+def pinhole(camera: d.Camera, placement: Placement) -> Pinhole:
+    """The record of a camera with a point aperture."""
+    matrix = np.asarray(camera.to_world, np.float64)
+    tan_x, tan_y = half_extents(camera)
+    offset_x, offset_y = camera.principal_point_offset
+    left, up, forward = axes(camera)
+    corner = forward + left * tan_x * (1.0 - 2.0 * offset_x) + up * tan_y * (1.0 - 2.0 * offset_y)
+    across, down = left * (-2.0 * tan_x / camera.width), up * (-2.0 * tan_y / camera.height)
+    origin = placement.points(matrix[:3, 3])
+    return Pinhole(
+        origin=Vec3(*origin),
+        corner=Vec3(*corner),
+        across=Vec3(*across),
+        down=Vec3(*down),
+        near=camera.near_clip * placement.scale,
+        far=camera.far_clip * placement.scale,
+        skip=max(0.0, float(np.linalg.norm(origin)) - 2.0),
+        filter=make_filter(camera.filter),
+    )
+
+
+def check_camera(camera: d.Camera) -> None:
+    if camera.width < 1 or camera.height < 1:
+        raise SceneError(f"camera: the film must have at least one pixel, got {camera.width} x {camera.height}")
+    if not 0.0 < camera.fov < 180.0:
+        raise SceneError(f"camera: fov must be between 0 and 180 degrees, got {camera.fov}")
+    if not 0.0 <= camera.near_clip < camera.far_clip:
+        raise SceneError(f"camera: expected 0 <= near_clip < far_clip, got {camera.near_clip}, {camera.far_clip}")
+    matrix = np.asarray(camera.to_world)
+    if matrix.shape != (4, 4) or not np.all(np.isfinite(matrix)) or abs(np.linalg.det(matrix[:3, :3])) < 1e-12:
+        raise SceneError(f"camera: to_world must be a finite, invertible (4, 4) matrix, got\n{matrix}")
+    if not (camera.filter.radius > 0.0 and camera.filter.stddev > 0.0):
+        raise SceneError(f"camera: the pixel filter needs a positive radius, got {camera.filter}")
+    if not 0.0 <= camera.aperture_radius < math.inf:
+        raise SceneError(f"camera: aperture_radius must be finite and not negative, got {camera.aperture_radius}")
+    if not camera.focus_distance > 0.0:
+        raise SceneError(f"camera: focus_distance must be positive, or inf, got {camera.focus_distance}")
+    if camera.aperture_blades != 0 and camera.aperture_blades < 3:
+        raise SceneError(f"camera: aperture_blades must be 0, a disk, or at least 3, got {camera.aperture_blades}")
+    if not math.isfinite(camera.aperture_rotation):
+        raise SceneError(f"camera: aperture_rotation must be finite, got {camera.aperture_rotation}")
+
+
+def half_extents(camera: d.Camera) -> tuple[float, float]:
+    """Tangents of half the field of view, across and down."""
+    tangent, aspect = math.tan(math.radians(camera.fov) / 2.0), camera.width / camera.height
+    axis = camera.fov_axis
+    if axis == "diagonal":
+        return tangent * aspect / math.hypot(aspect, 1.0), tangent / math.hypot(aspect, 1.0)
+    if axis == "smaller":
+        axis = "y" if aspect > 1.0 else "x"
+    elif axis == "larger":
+        axis = "x" if aspect > 1.0 else "y"
+    return (tangent, tangent / aspect) if axis == "x" else (tangent * aspect, tangent)
