@@ -11,8 +11,11 @@ from scipy.special import beta
 
 from raylab.brdf import Lambertian, Phong, diffuse_share, reflect
 from raylab.jit import njit
+from raylab.microfacet import BECKMANN, GGX, Microfacets
+from raylab.rough import TABLE, RoughConductor, RoughPlastic
 from raylab.sampling import sample_cos_hemisphere, sample_phong_lobe
 from raylab.vec3 import Vec3, black, dot, length, luminance
+from raylab.view import View
 
 PI = math.pi
 N = unit(0.2, -0.4, 0.6)
@@ -188,11 +191,24 @@ def test_the_parts_of_the_mixture_take_their_shares_of_the_square():
         assert p == pytest.approx(share * max(0.0, dot(w, N)) / PI + (1 - share) * lobe, rel=1e-12)
 
 
+def metal(kind, alpha_u, alpha_v):
+    return RoughConductor(Microfacets(kind, alpha_u, alpha_v), GREY, WHITE * 3.0, WHITE, N, around(N, 1, 0, 0))
+
+
+def plastic(kind, alpha):
+    """Half of what the coat does not reflect passes it, at every angle."""
+    coat = View(np.full((1, TABLE + 1), 0.5))
+    return RoughPlastic(Microfacets(kind, alpha, alpha), 1.5, GREY / PI, WHITE, False, coat, 0, N, around(N, 1, 0, 0))
+
+
 MIXTURES = [
     (Lambertian(GREY / PI), 30),
     (phong(5, GREY * (0.4 / PI), GREY), 55),
     (phong(60), 20),
     (phong(2, GREY / PI, black), 70),
+    (metal(GGX, 0.6, 0.3), 60),
+    (metal(BECKMANN, 0.4, 0.4), 75),
+    (plastic(GGX, 0.5), 40),
 ]
 
 
