@@ -81,7 +81,35 @@ class Dielectric:
         return replace(self, int_ior=self.ext_ior, ext_ior=self.int_ior)
 
 
-Material = Diffuse | Phong | Conductor | Dielectric
+@dataclass(frozen=True, eq=False)
+class RoughConductor:
+    """Metal of microfacets of index `eta` + i `k` relative to the air; roughness alpha > 0 along u and v."""
+
+    eta: Array = field(default_factory=lambda: _rgb(0.0))
+    k: Array = field(default_factory=lambda: _rgb(1.0))
+    specular_reflectance: Array = field(default_factory=lambda: _rgb(1.0))
+    alpha_u: float = 0.1
+    alpha_v: float = 0.1
+    distribution: Literal["beckmann", "ggx"] = "beckmann"
+
+
+@dataclass(frozen=True, eq=False)
+class RoughPlastic:
+    """A diffuse base under a rough clear coat of index `int_ior` (polypropylene) in `ext_ior` (air).
+
+    `nonlinear` counts the colour of the base each time that the coat throws light back to it.
+    """
+
+    diffuse_reflectance: Colour = field(default_factory=lambda: _rgb(0.5))
+    specular_reflectance: Array = field(default_factory=lambda: _rgb(1.0))
+    int_ior: float = 1.49
+    ext_ior: float = 1.000277
+    alpha: float = 0.1
+    distribution: Literal["beckmann", "ggx"] = "beckmann"
+    nonlinear: bool = False
+
+
+Material = Diffuse | Phong | Conductor | Dielectric | RoughConductor | RoughPlastic
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -20,7 +20,7 @@ PARTS = {
     "point lights": Part("sums over the point lights", "the scene has no point light"),
     "directional lights": Part("sums over the directional lights", "the scene has no directional light"),
     "environment": Part("looks up the environment for rays that leave the scene", "the scene has no environment"),
-    "glossy BRDF": Part("evaluates and samples Phong lobes", "all surfaces are diffuse"),
+    "glossy BRDF": Part("evaluates and samples the lobes of glossy surfaces", "all surfaces are diffuse"),
     "mirrors and glass": Part("sends light on by Fresnel's formulas and Snell's law", "no surface is smooth"),
     "textures": Part("interpolates (u, v) and looks up bitmaps", "no surface has a bitmap"),
     "smooth normals": Part("interpolates vertex normals", "no mesh has vertex normals"),

@@ -10,12 +10,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from raylab.brdf import Lambertian, Phong
+from raylab.microfacet import Microfacets
 from raylab.record import record
+from raylab.rough import RoughConductor, RoughPlastic
 from raylab.smooth import Conductor, Dielectric
 from raylab.vec3 import Vec3, black
 from raylab.view import View
 
-DIFFUSE, PHONG, CONDUCTOR, DIELECTRIC = range(4)
+DIFFUSE, PHONG, CONDUCTOR, DIELECTRIC, ROUGH_CONDUCTOR, ROUGH_PLASTIC = range(6)
 # Columns of a material's row; what stands from PARAMETERS on is up to the kind.
 COLOUR, TEXTURE, SPECULAR, EXPONENT, KIND, PARAMETERS, ROW = 0, 3, 4, 7, 8, 9, 24
 
@@ -47,12 +49,20 @@ class AnyBrdf(NamedTuple):
         kinds = self.kinds
         if kinds.phong.has(self.kind):
             return kinds.phong.of(self).eval(V, L)
+        if kinds.rough_conductor.has(self.kind):
+            return kinds.rough_conductor.of(self).eval(V, L)
+        if kinds.rough_plastic.has(self.kind):
+            return kinds.rough_plastic.of(self).eval(V, L)
         return self.k_d  # black for smooth surfaces
 
     def sample(self, V, N, u):
         kinds = self.kinds
         if kinds.phong.has(self.kind):
             return kinds.phong.of(self).sample(V, N, u)
+        if kinds.rough_conductor.has(self.kind):
+            return kinds.rough_conductor.of(self).sample(V, N, u)
+        if kinds.rough_plastic.has(self.kind):
+            return kinds.rough_plastic.of(self).sample(V, N, u)
         if kinds.conductor.has(self.kind):
             return kinds.conductor.of(self).sample(V, N, u)
         if kinds.dielectric.has(self.kind):
@@ -63,13 +73,19 @@ class AnyBrdf(NamedTuple):
         kinds = self.kinds
         if kinds.phong.has(self.kind):
             return kinds.phong.of(self).pdf(V, w, N)
+        if kinds.rough_conductor.has(self.kind):
+            return kinds.rough_conductor.of(self).pdf(V, w, N)
+        if kinds.rough_plastic.has(self.kind):
+            return kinds.rough_plastic.of(self).pdf(V, w, N)
         if self.is_specular():
             return 0.0
         return Lambertian(self.k_d).pdf(V, w, N)
 
     def is_glossy(self):
         kinds = self.kinds
-        return kinds.phong.has(self.kind) and kinds.phong.of(self).is_glossy()
+        if kinds.phong.has(self.kind):
+            return kinds.phong.of(self).is_glossy()
+        return kinds.rough_conductor.has(self.kind) or kinds.rough_plastic.has(self.kind)
 
     def is_specular(self):
         return self.kinds.conductor.has(self.kind) or self.kinds.dielectric.has(self.kind)
@@ -138,16 +154,51 @@ class DielectricKind(NamedTuple):
         return Dielectric(brdf.number(PARAMETERS), brdf.colour(SPECULAR), brdf.colour(PARAMETERS + 1))
 
 
+@record
+class RoughConductorKind(NamedTuple):
+    """Parameters: eta 3, k 3, distribution, alpha_u, alpha_v."""
+
+    kind: int = ROUGH_CONDUCTOR
+
+    def has(self, kind):
+        return kind == ROUGH_CONDUCTOR
+
+    def of(self, brdf):
+        first = PARAMETERS + 6
+        facets = Microfacets(int(brdf.number(first)), brdf.number(first + 1), brdf.number(first + 2))
+        eta, k = brdf.colour(PARAMETERS), brdf.colour(PARAMETERS + 3)
+        return RoughConductor(facets, eta, k, brdf.colour(SPECULAR), brdf.N, brdf.T)
+
+
+@record
+class RoughPlasticKind(NamedTuple):
+    """Parameters: distribution, alpha, eta, nonlinear, row of `coats`: what the coats let pass, `plastic_table`."""
+
+    coats: View
+
+    def has(self, kind):
+        return kind == ROUGH_PLASTIC
+
+    def of(self, brdf):
+        alpha, eta = brdf.number(PARAMETERS + 1), brdf.number(PARAMETERS + 2)
+        facets = Microfacets(int(brdf.number(PARAMETERS)), alpha, alpha)
+        nonlinear, coat = brdf.number(PARAMETERS + 3) != 0.0, int(brdf.number(PARAMETERS + 4))
+        return RoughPlastic(facets, eta, brdf.k_d, brdf.colour(SPECULAR), nonlinear, self.coats, coat, brdf.N, brdf.T)
+
+
 class Kinds(NamedTuple):
     """The kinds of surface in a scene, `Absent` where there is none; diffuse ones need no record."""
 
     phong: Any = Absent()
     conductor: Any = Absent()
     dielectric: Any = Absent()
+    rough_conductor: Any = Absent()
+    rough_plastic: Any = Absent()
 
 
 RECORDS: dict[int, tuple[str, Any]] = {
     PHONG: ("phong", PhongKind()),
     CONDUCTOR: ("conductor", ConductorKind()),
     DIELECTRIC: ("dielectric", DielectricKind()),
+    ROUGH_CONDUCTOR: ("rough_conductor", RoughConductorKind()),
 }

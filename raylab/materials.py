@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from raylab.brdf import Lambertian, Phong
 from raylab.jit import njit
-from raylab.kinds import CONDUCTOR, DIELECTRIC, KIND, PHONG, TEXTURE, AnyBrdf
+from raylab.kinds import CONDUCTOR, DIELECTRIC, KIND, PHONG, ROUGH_CONDUCTOR, ROUGH_PLASTIC, TEXTURE, AnyBrdf
 from raylab.record import record
 from raylab.sampling import frame
 from raylab.vec3 import Vec3, vec3_at
@@ -130,7 +130,8 @@ class AnyMaterials(NamedTuple):
 
     def glossy(self):
         """Does any surface have a lobe?"""
-        return self.kinds.phong.has(PHONG)
+        rough = self.kinds.rough_conductor.has(ROUGH_CONDUCTOR) or self.kinds.rough_plastic.has(ROUGH_PLASTIC)
+        return rough or self.kinds.phong.has(PHONG)
 
     def smooth(self):
         """Is any surface a mirror or a piece of glass?"""

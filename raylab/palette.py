@@ -12,8 +12,11 @@ from raylab import description as d
 from raylab import kinds as k
 from raylab import materials as m
 from raylab.errors import SceneError
+from raylab.microfacet import BECKMANN, GGX, LEAST_ALPHA
+from raylab.rough import plastic_table
 from raylab.view import View
 
+_DISTRIBUTIONS = {"ggx": GGX, "beckmann": BECKMANN}
 _FILTERS = {"bilinear": m.BILINEAR, "nearest": m.NEAREST}
 _WRAPS = {"repeat": m.REPEAT, "mirror": m.MIRROR, "clamp": m.CLAMP}
 
@@ -26,6 +29,7 @@ class Palette:
         self._rows: list[list[float]] = []
         self._bitmaps: list[d.Bitmap] = []
         self._keep: list[d.Material] = []
+        self._coats: dict[tuple[int, float, float], npt.NDArray[np.float64]] = {}
 
     @property
     def textured(self) -> bool:
@@ -66,7 +70,17 @@ class Palette:
             return m.DiffuseMaterials(View(rows[:, : k.SPECULAR]), textures)
         if present <= {k.DIFFUSE, k.PHONG}:
             return m.PhongMaterials(View(rows[:, : k.KIND]), textures)
-        return m.AnyMaterials(View(rows), textures, k.Kinds(**dict(k.RECORDS[kind] for kind in present - {k.DIFFUSE})))
+        kinds = dict(k.RECORDS[kind] for kind in present if kind in k.RECORDS)
+        if self._coats:
+            kinds["rough_plastic"] = k.RoughPlasticKind(View(np.stack(list(self._coats.values()))))
+        return m.AnyMaterials(View(rows), textures, k.Kinds(**kinds))
+
+    def coat(self, kind: int, alpha: float, eta: float) -> int:
+        """The row of a rough plastic's coat, computed once."""
+        key = (kind, alpha, eta)
+        if key not in self._coats:
+            self._coats[key] = plastic_table(*key)
+        return list(self._coats).index(key)
 
     def _textures(self) -> m.Textures:
         sheets, maps, first = [], [], 0
@@ -114,12 +128,30 @@ def _conductor(palette: Palette, material: d.Conductor) -> list[float]:
 
 
 def _dielectric(palette: Palette, material: d.Dielectric) -> list[float]:
-    for name, value in (("int_ior", material.int_ior), ("ext_ior", material.ext_ior)):
-        if not 0.0 < value <= LARGEST_INDEX:
-            raise SceneError(f"dielectric: {name} must be greater than 0, at most {LARGEST_INDEX:g}, got {value}")
+    indices(material, "dielectric")
     specular = reflectance(material.specular_reflectance, "dielectric specular_reflectance")
     transmittance = reflectance(material.specular_transmittance, "dielectric specular_transmittance")
     return row(k.DIELECTRIC, BLACK, specular, 1.0, material.int_ior / material.ext_ior, *transmittance)
+
+
+def _rough_conductor(palette: Palette, material: d.RoughConductor) -> list[float]:
+    what = "roughconductor"
+    eta, absorption = (index(v, f"{what} {n}") for n, v in (("eta", material.eta), ("k", material.k)))
+    specular = reflectance(material.specular_reflectance, f"{what} specular_reflectance")
+    alphas = [alpha(v, f"{what} {n}") for n, v in (("alpha_u", material.alpha_u), ("alpha_v", material.alpha_v))]
+    kind = distribution(material.distribution, what)
+    return row(k.ROUGH_CONDUCTOR, BLACK, specular, 1.0, *eta, *absorption, kind, *alphas)
+
+
+def _rough_plastic(palette: Palette, material: d.RoughPlastic) -> list[float]:
+    what = "roughplastic"
+    indices(material, what)
+    colour = palette.colour(material.diffuse_reflectance, f"{what} diffuse_reflectance")
+    specular = reflectance(material.specular_reflectance, f"{what} specular_reflectance")
+    kind, roughness = distribution(material.distribution, what), alpha(material.alpha, f"{what} alpha")
+    eta = material.int_ior / material.ext_ior
+    coat = palette.coat(kind, roughness, eta)
+    return row(k.ROUGH_PLASTIC, colour, specular, 1.0, kind, roughness, eta, material.nonlinear, coat)
 
 
 ROWS: dict[type, Callable[[Palette, Any], list[float]]] = {
@@ -127,8 +159,11 @@ ROWS: dict[type, Callable[[Palette, Any], list[float]]] = {
     d.Phong: _phong,
     d.Conductor: _conductor,
     d.Dielectric: _dielectric,
+    d.RoughConductor: _rough_conductor,
+    d.RoughPlastic: _rough_plastic,
 }
 LARGEST_INDEX = 1e6
+LARGEST_ALPHA = 10.0  # 1 is very rough already
 
 
 def reflectance(value: Any, what: str) -> npt.NDArray[np.float64]:
@@ -155,3 +190,23 @@ def index(value: Any, what: str) -> npt.NDArray[np.float64]:
     if bad.any():
         raise SceneError(f"{what} must lie in [0, {LARGEST_INDEX:g}], got {rgb[bad][0]}")
     return rgb
+
+
+def indices(material: d.Dielectric | d.RoughPlastic, what: str) -> None:
+    """SceneError unless both refractive indices are in (0, LARGEST_INDEX]."""
+    for name, value in (("int_ior", material.int_ior), ("ext_ior", material.ext_ior)):
+        if not 0.0 < value <= LARGEST_INDEX:
+            raise SceneError(f"{what}: {name} must be greater than 0, at most {LARGEST_INDEX:g}, got {value}")
+
+
+def alpha(value: float, what: str) -> float:
+    """A roughness in (0, LARGEST_ALPHA], at least LEAST_ALPHA."""
+    if not 0.0 < value <= LARGEST_ALPHA:
+        raise SceneError(f"{what} must be greater than 0, at most {LARGEST_ALPHA:g}, got {value}")
+    return max(float(value), LEAST_ALPHA)
+
+
+def distribution(name: str, what: str) -> int:
+    if name not in _DISTRIBUTIONS:
+        raise SceneError(f"{what}: the distribution must be one of {', '.join(_DISTRIBUTIONS)}, got {name!r}")
+    return _DISTRIBUTIONS[name]

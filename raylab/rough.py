@@ -23,6 +23,7 @@ from raylab.view import View
 
 LEAST_PDF = 2.0**-1000  # never 0 / 0 where both f_r and p underflow
 TABLE = 64  # nodes of a table over cos(theta), as in Mitsuba
+QUADRATURE = 64  # facets for each of them, along each side of the square
 
 
 @record
@@ -130,7 +131,11 @@ def mirror_lobe(brdf, V, L, H):
     v, w = to_local(brdf, V), to_local(brdf, L)
     if v.z <= 0.0 or w.z <= 0.0:
         return 0.0
-    return 0.25 * brdf.facets.density(to_local(brdf, H)) / (brdf.facets.seen_as_mitsuba(v) * brdf.facets.seen_as_mitsuba(w))
+    return (
+        0.25
+        * brdf.facets.density(to_local(brdf, H))
+        / (brdf.facets.seen_as_mitsuba(v) * brdf.facets.seen_as_mitsuba(w))
+    )
 
 
 @njit
@@ -185,7 +190,7 @@ def plastic_table(kind: int, alpha: float, eta: float) -> npt.NDArray[np.float64
     """
     table = np.zeros(TABLE + 1)
     facets = Microfacets(kind, float(alpha), float(alpha))
-    x, weight = np.polynomial.legendre.leggauss(64)
+    x, weight = np.polynomial.legendre.leggauss(QUADRATURE)
     _coat(facets, float(eta), 0.5 * (x + 1.0), 0.5 * weight, table)
     return table
 
@@ -210,7 +215,7 @@ def coat(facets: Any, eta: Any, nodes: Any, weights: Any, table: Any) -> None:
 @njit
 def passed(facets, v, m, eta):
     """(1 - F) G1 of the light from v that goes through a facet m and is not masked behind."""
-    F, T, cosine = fresnel.dielectric(dot(v, m), eta)
+    _, T, cosine = fresnel.dielectric(dot(v, m), eta)
     w = fresnel.refract(v, m, eta, cosine)
     return T * -w.z / facets.seen_as_mitsuba(-w) if w.z < 0.0 else 0.0
 

@@ -6,18 +6,24 @@ import math
 
 import numpy as np
 import pytest
-from helpers import U53, array, unit
+from helpers import U53, array, size, unit
 
 from raylab import description as d
 from raylab import materials as m
+from raylab import rough
 from raylab.brdf import Lambertian, Phong
 from raylab.errors import SceneError
 from raylab.jit import njit
 from raylab.kinds import Absent
+from raylab.microfacet import BECKMANN, GGX, Microfacets
 from raylab.palette import Palette
+from raylab.rough import RoughConductor, RoughPlastic, plastic_table
+from raylab.sampling import frame
 from raylab.smooth import Conductor, Dielectric
 from raylab.vec3 import Vec3
+from raylab.view import View
 
+rough.QUADRATURE = size(64, 4)
 N = unit(0.0, 0.6, 0.8)
 PLAIN = Vec3(0.1, 0.2, 0.3)
 
@@ -206,6 +212,8 @@ def test_what_is_no_material_is_refused(material, message):
 
 GLASS = d.Dielectric(1.5, 1.0, np.array([0.9, 0.8, 0.7]), np.array([0.3, 0.4, 0.5]))
 GOLD = d.Conductor(np.array([0.2, 0.4, 1.3]), np.array([3.9, 2.4, 1.9]), np.array([1.0, 0.9, 0.8]))
+STEEL = d.RoughConductor(GOLD.eta, GOLD.k, GOLD.specular_reflectance, 0.2, 0.2, "ggx")
+CUP = d.RoughPlastic(np.array([0.1, 0.2, 0.3]), np.array([0.9, 0.8, 0.7]), 1.5, 1.0, 0.3, "beckmann", True)
 SHINY = d.Phong(np.array([0.1, 0.2, 0.3]), np.array([0.4, 0.5, 0.6]), 25.0)
 
 
@@ -227,9 +235,13 @@ def numbers_in(answer):
     return np.concatenate([[*part] if isinstance(part, (Vec3, tuple)) else [part] for part in answer]).astype(float)
 
 
+def vec(rgb):
+    return Vec3(*rgb)
+
+
 def everything():
     palette = Palette()
-    numbers = [palette.number(x) for x in (d.Diffuse(), SHINY, GOLD, GLASS, GLASS.inside)]
+    numbers = [palette.number(x) for x in (d.Diffuse(), SHINY, STEEL, CUP, GOLD, GLASS, GLASS.inside)]
     return palette.materials(), numbers
 
 
@@ -238,9 +250,22 @@ def test_any_brdf_answers_as_the_brdf_of_its_kind():
     assert isinstance(table, m.AnyMaterials)
     assert table.glossy()
     assert table.smooth()
+    T, _ = frame(N)
     alone = [
         Lambertian(Vec3(*np.full(3, 0.5 / math.pi))),
         Phong(Vec3(*SHINY.diffuse_reflectance / math.pi), Vec3(*SHINY.specular_reflectance), 25.0, N),
+        RoughConductor(Microfacets(GGX, 0.2, 0.2), *map(vec, (STEEL.eta, STEEL.k, STEEL.specular_reflectance)), N, T),
+        RoughPlastic(
+            Microfacets(BECKMANN, 0.3, 0.3),
+            1.5,
+            vec(CUP.diffuse_reflectance / math.pi),
+            vec(CUP.specular_reflectance),
+            True,
+            View(plastic_table(BECKMANN, 0.3, 1.5)[None]),
+            0,
+            N,
+            T,
+        ),
         Conductor(Vec3(*GOLD.eta), Vec3(*GOLD.k), Vec3(*GOLD.specular_reflectance)),
         Dielectric(1.5, Vec3(*GLASS.specular_reflectance), Vec3(*GLASS.specular_transmittance)),
         Dielectric(1.0 / 1.5, Vec3(*GLASS.specular_reflectance), Vec3(*GLASS.specular_transmittance)),
@@ -257,7 +282,7 @@ def test_any_brdf_answers_as_the_brdf_of_its_kind():
 def test_light_sampling_finds_a_smooth_surface_black():
     table, numbers = everything()
     V = unit(0.3, 0.4, 0.9)
-    for number in numbers[2:]:
+    for number in numbers[4:]:
         (glossy, specular), f, w, p, pdf, *_ = answers_at(table, number, V, V, N, (0.3, 0.3))
         assert (glossy, specular) == (False, True)
         assert (f, pdf) == (Vec3(0, 0, 0), 0.0)
@@ -272,6 +297,8 @@ def test_kinds_that_a_scene_lacks_are_absent():
     table = palette.materials()
     assert isinstance(table.kinds.phong, Absent)
     assert isinstance(table.kinds.dielectric, Absent)
+    assert isinstance(table.kinds.rough_conductor, Absent)
+    assert isinstance(table.kinds.rough_plastic, Absent)
     assert not table.glossy()
     assert table.smooth()
 
@@ -297,3 +324,30 @@ BAD_SMOOTH = [
 def test_what_is_no_mirror_and_no_glass_is_refused(material, message):
     with pytest.raises(SceneError, match=message):
         Palette().number(material)
+
+
+BAD_ROUGH = [
+    (d.RoughConductor(alpha_u=0.0), "roughconductor alpha_u must be greater than 0, at most 10, got 0.0"),
+    (d.RoughConductor(alpha_v=-0.1), "roughconductor alpha_v must be greater than 0, at most 10, got -0.1"),
+    (d.RoughPlastic(alpha=math.nan), "roughplastic alpha must be greater than 0"),
+    (d.RoughPlastic(alpha=11.0), "at most 10, got 11"),
+    (d.RoughPlastic(distribution="phong"), "distribution must be one of ggx, beckmann, got 'phong'"),  # type: ignore[arg-type]
+    (d.RoughPlastic(int_ior=-1.5), "roughplastic: int_ior must be greater than 0"),
+    (d.RoughConductor(eta=np.array([0.2, -0.1, 0.2])), "roughconductor eta must lie in"),
+    (d.RoughPlastic(diffuse_reflectance=np.full(3, 2.0)), "roughplastic diffuse_reflectance"),
+]
+
+
+@pytest.mark.parametrize(("material", "message"), BAD_ROUGH)
+def test_what_is_no_rough_surface_is_refused(material, message):
+    with pytest.raises(SceneError, match=message):
+        Palette().number(material)
+
+
+def test_rough_metal_alone_is_glossy_and_equal_coats_are_computed_once():
+    palette = Palette()
+    palette.number(d.RoughConductor())
+    assert palette.materials().glossy()
+    rows = [palette.coat(GGX, a, 1.5) for a in (0.2, 0.3, 0.2)]
+    assert rows == [0, 1, 0]
+    assert len(palette.materials().kinds.rough_plastic.coats) == 2
