@@ -1,0 +1,48 @@
+"""Tails: can a mean and its interval be trusted at all, and what is known of events that were hardly seen?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from raylab.stats.histogram import Array
+
+
+def tail_index(values: Array, share: float = 0.01) -> tuple[float, float]:
+    """Hill's estimate of the tail index a of P(|X| > x) ~ x^-a, and its standard error a / sqrt(k).
+
+    At most 2 means infinite variance: the error bar of a mean of such values is not to be trusted. Source: Hill 1975,
+    "A simple general approach to inference about the tail of a distribution", Ann. Statist. 3. The k = `share` n
+    largest absolute values are used, at least 10.
+    """
+    largest = np.sort(np.abs(np.asarray(values, np.float64).ravel()))[::-1]
+    k = max(10, int(share * len(largest)))
+    if len(largest) <= k or largest[k] <= 0.0:
+        return math.inf, math.nan
+    mean_log = float(np.mean(np.log(largest[:k] / largest[k])))
+    if mean_log <= 0.0:
+        return math.inf, math.nan
+    return 1.0 / mean_log, 1.0 / mean_log / math.sqrt(k)
+
+
+def is_trusted(values: Array) -> bool:
+    """Whether the tail is light enough for a finite variance, as far as these values (n,) can tell.
+
+    False when Hill's index is below 2 by no less than one standard error's doubt: it does not exceed 2 by one.
+    """
+    index, error = tail_index(values)
+    return math.isinf(index) or index - error > 2.0
+
+
+def wilson(hits: int, n: int, confidence: float = 0.95) -> tuple[float, float]:
+    """Interval of a probability after `hits` in n trials, sound for rare hits as well (Wilson 1927)."""
+    from scipy.stats import binomtest
+
+    found = binomtest(hits, n).proportion_ci(confidence, "wilson")
+    return float(found.low), float(found.high)
+
+
+def rule_of_three(n: int, confidence: float = 0.95) -> float:
+    """The largest probability that n trials without a hit leave open: 1 - (1 - confidence)^(1/n), about 3 / n."""
+    return -math.expm1(math.log1p(-confidence) / n)
