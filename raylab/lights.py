@@ -14,6 +14,17 @@ from raylab.jit import njit
 from raylab.point import Point, curved_point, dist_sqr, facet_point, free_point, triangle_frame
 from raylab.record import record
 from raylab.sampling import PI, one_minus_cos, pdf_cone, sample_cone, sample_disk, sample_sphere, sample_triangle
+from raylab.solid_angle import (
+    is_far,
+    is_flat,
+    is_round,
+    pdf_disk_angle,
+    pdf_rectangle_angle,
+    pdf_triangle_angle,
+    sample_disk_angle,
+    sample_rectangle_angle,
+    sample_triangle_angle,
+)
 from raylab.vec3 import Vec3, black, dot, normalize, vec3_at
 from raylab.view import View
 
@@ -72,6 +83,36 @@ class AreaLight(NamedTuple):
             return self.shapes.sphere.pdf(self, x, y)
         return 1.0 / self.area
 
+    def sample_solid_angle(self, x, u):
+        """Uniform in solid angle: p_y = cos(theta_s) / (|x - y|^2 Omega), 1/m^2; a cylinder or mesh by area."""
+        shapes = self.shapes
+        if shapes.triangle.has(self.kind):
+            return shapes.triangle.sample_solid_angle(self, x, u)
+        if shapes.rectangle.has(self.kind):
+            return shapes.rectangle.sample_solid_angle(self, x, u)
+        if shapes.disk.has(self.kind):
+            return shapes.disk.sample_solid_angle(self, x, u)
+        return self.sample(x, u)
+
+    def pdf_solid_angle(self, x, y):
+        """The density p_y, 1/m^2, with which `sample_solid_angle(x, u)` would have found y."""
+        shapes = self.shapes
+        if shapes.triangle.has(self.kind):
+            return shapes.triangle.pdf_solid_angle(self, x, y)
+        if shapes.rectangle.has(self.kind):
+            return shapes.rectangle.pdf_solid_angle(self, x, y)
+        if shapes.disk.has(self.kind):
+            return shapes.disk.pdf_solid_angle(self, x, y)
+        return self.pdf(x, y)
+
+
+@njit
+def to_area(x, y):
+    """p_y / p_w = cos(theta_s) / |x - y|^2, sr/m^2: how a density over directions from x becomes one over points y."""
+    d = y - x
+    dd = dot(d, d)
+    return max(0.0, -dot(d, y.n)) / (dd * math.sqrt(dd))
+
 
 @njit
 def vec3_from(rows, i, j):
@@ -98,6 +139,12 @@ class NoLight(NamedTuple):
     def pdf(self, x, y):
         return 0.0
 
+    def sample_solid_angle(self, x, u):
+        return self.y, 0.0
+
+    def pdf_solid_angle(self, x, y):
+        return 0.0
+
 
 NoLight.EMPTY = True  # type: ignore[attr-defined]
 
@@ -120,6 +167,12 @@ class Absent(NamedTuple):
     def pdf(self, light, x, y):
         return 0.0
 
+    def sample_solid_angle(self, light, x, u):
+        return free_point(black), 0.0
+
+    def pdf_solid_angle(self, light, x, y):
+        return 0.0
+
 
 @record
 class TriangleShape(NamedTuple):
@@ -132,6 +185,22 @@ class TriangleShape(NamedTuple):
         b1, b2 = sample_triangle(u)
         y = light.p + light.e1 * b1 + light.e2 * b2
         return facet_point(y, light.n, light.slack, light.tilt), 1.0 / light.area
+
+    def sample_solid_angle(self, light, x, u):
+        a = light.p - x.p
+        if is_far(a, light.e1, light.e2):
+            return self.sample(light, x, u)
+        s, t = sample_triangle_angle(a, light.e1, light.e2, u)
+        y = facet_point(light.p + light.e1 * s + light.e2 * t, light.n, light.slack, light.tilt)
+        return y, self.pdf_solid_angle(light, x, y)
+
+    def pdf_solid_angle(self, light, x, y):
+        a = light.p - x.p
+        if is_far(a, light.e1, light.e2):
+            return 1.0 / light.area
+        if is_flat(a, light.e1, light.e2):
+            return 0.0
+        return pdf_triangle_angle(a, light.e1, light.e2) * to_area(x, y)
 
 
 @record
@@ -147,6 +216,22 @@ class RectangleShape(NamedTuple):
         y = light.p + light.e1 * u[0] + light.e2 * u[1]
         return facet_point(y, light.n, light.slack, light.tilt), 1.0 / light.area
 
+    def sample_solid_angle(self, light, x, u):
+        a = light.p - x.p
+        if is_far(a, light.e1, light.e2):
+            return self.sample(light, x, u)
+        s, t = sample_rectangle_angle(a, light.e1, light.e2, u)
+        y = facet_point(light.p + light.e1 * s + light.e2 * t, light.n, light.slack, light.tilt)
+        return y, self.pdf_solid_angle(light, x, y)
+
+    def pdf_solid_angle(self, light, x, y):
+        a = light.p - x.p
+        if is_far(a, light.e1, light.e2):
+            return 1.0 / light.area
+        if is_flat(a, light.e1, light.e2):
+            return 0.0
+        return pdf_rectangle_angle(a, light.e1, light.e2) * to_area(x, y)
+
 
 @record
 class DiskShape(NamedTuple):
@@ -158,6 +243,24 @@ class DiskShape(NamedTuple):
     def sample(self, light, x, u):
         a, b = sample_disk(u)
         return curved_point(light.p + light.e1 * a + light.e2 * b, light.n), 1.0 / light.area
+
+    def sample_solid_angle(self, light, x, u):
+        a = light.p - x.p
+        if is_far(a, light.e1, light.e2) or not is_round(light.e1, light.e2):
+            return self.sample(light, x, u)
+        if is_flat(a, light.e1, light.e2):
+            return curved_point(light.p, light.n), 0.0
+        s, t = sample_disk_angle(a, light.e1, light.e2, u)
+        y = curved_point(light.p + light.e1 * s + light.e2 * t, light.n)
+        return y, self.pdf_solid_angle(light, x, y)
+
+    def pdf_solid_angle(self, light, x, y):
+        a = light.p - x.p
+        if is_far(a, light.e1, light.e2) or not is_round(light.e1, light.e2):
+            return 1.0 / light.area
+        if is_flat(a, light.e1, light.e2):
+            return 0.0
+        return pdf_disk_angle(a, light.e1, light.e2, y - x) * to_area(x, y)
 
 
 @record

@@ -76,6 +76,25 @@ def area(x, V, brdf, N, scene, rng):
 
 
 @njit
+def area_solid_angle(x, V, brdf, N, scene, rng):
+    """Slide "Area source by Monte Carlo", y drawn uniformly from the solid angle Omega of the light.
+
+    g(y) = L_s f_r(v, w) |n_x . w| |n_y . w| / (|x - y|^2 p(y)),  p = |n_y . w| / (|x - y|^2 Omega) in 1/m^2
+    """
+    result = black
+    for light in scene.lights:
+        y, p_y = light.sample_solid_angle(x, rng.square())
+        if not shadow(scene, x, y):
+            L = normalize(y - x)
+            f_r = brdf.eval(V, L)
+            result += (light.radiance * f_r
+                       * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n))
+                       / dist_sqr(x, y)
+                       / p_y)  # fmt: skip
+    return result
+
+
+@njit
 def directional_light(x, V, brdf, N, scene, rng):
     """Slide "Illumination as integration" (over incoming directions), step 1: a directional source.
 

@@ -86,7 +86,7 @@ TABLE = (
         test="test_ladders.py::test_step_4_over_the_light_is_the_closed_form",
     ),
     Slide("Area source by Monte Carlo (integral, any BRDF)", ("raylab.shade.area",)),
-    Slide("Area source by Monte Carlo", ("raylab.shade.area",)),
+    Slide("Area source by Monte Carlo", ("raylab.shade.area", "raylab.shade.area_solid_angle")),
     Slide(
         "Illumination as integration (Lambertian, over directions)",
         (

@@ -25,6 +25,7 @@ BUILT_IN: dict[str, tuple[Any, str]] = {
     "point_light": (slides.point_light, "point lights"),
     "area_diffuse": (slides.area_diffuse, "area lights"),
     "area": (slides.area, "area lights"),
+    "area_solid_angle": (slides.area_solid_angle, "area lights"),
     "directional_light": (slides.directional_light, "directional lights"),
     "env_uniform": (slides.env_uniform, "environment"),
     "env_cosine": (slides.env_cosine, "environment"),

@@ -204,7 +204,7 @@ def test_ctrl_c_keeps_what_is_done(scene, tmp_path):
 
 def test_shades_lists_those_that_make_sense(scene, run):
     lines = run("shades", scene).stdout.splitlines()
-    assert [line.split()[0] for line in lines] == ["direct", "area_diffuse", "area"]
+    assert [line.split()[0] for line in lines] == ["direct", "area_diffuse", "area", "area_solid_angle"]
 
 
 def test_version_and_help(run):

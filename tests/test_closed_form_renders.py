@@ -199,7 +199,7 @@ AREA = {  # shapes, normal, irradiance for radiance 1
 
 
 @pytest.mark.parametrize("case", AREA)
-@pytest.mark.parametrize("shade", ["area_diffuse", "area", "direct"])
+@pytest.mark.parametrize("shade", ["area_diffuse", "area", "area_solid_angle", "direct"])
 def test_area_lights(case, shade):
     shapes, n, irradiance = AREA[case]
     check(render(lit(shapes, n=n), shade), RHO / math.pi * LIGHT * irradiance)
@@ -250,6 +250,39 @@ def test_variance_of_a_rectangle(visible):
     image = render(lit([rectangle(CENTRED, WHITE), *blocker], material=d.Diffuse(WHITE)), "area")
     check(image, mean, second - mean**2)
     check_variance(image, second - mean**2, mean, 2.0 / math.pi)
+
+
+@pytest.mark.parametrize("height", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize("shape", ["disk", "rectangle"])
+def test_variance_by_solid_angle(shape, height):
+    """g = Omega cos / pi: E g^2 = Omega / pi^2 times the integral of cos^2 over the light's directions.
+
+    By area, g = A cos cos / (pi r^2): the same light at height 0.1 has more than 100 times the variance.
+    """
+    if shape == "disk":
+        angle = math.atan2(1.5, height)
+        light, largest = disk((0, 0, height), -Z, 1.5, WHITE), 4.0 * math.sin(angle / 2.0) ** 2
+        exact, mean = variances.cone_cap(angle), forms.disk_coaxial(1.5, height) / math.pi
+        by_area = variances.area_disk(1.5, height)
+    else:
+        light = rectangle(CENTRED * [1, 1, height], WHITE)
+        mean = 4.0 * forms.rectangle_parallel(1.0, 0.5, height) / math.pi
+
+        def integral(power, sharp):
+            """Of h^power / r^sharp over the light."""
+
+            def inner(y, x):
+                return height**power / (x * x + y * y + height**2) ** (sharp / 2.0)
+
+            return 4.0 * integrate.dblquad(inner, 0.0, 1.0, 0.0, 0.5, epsabs=1e-10)[0]
+
+        omega = integral(1, 3)
+        largest, exact = omega / math.pi, omega * integral(3, 5) / math.pi**2 - mean**2
+        by_area = 2.0 * integral(4, 8) / math.pi**2 - mean**2
+    image = render(lit([light], material=d.Diffuse(WHITE)), "area_solid_angle")
+    check(image, mean, exact)
+    check_variance(image, exact, mean, largest)
+    assert by_area / exact > (100.0 if height < 0.2 else 1.0)
 
 
 # --- lights without area ---

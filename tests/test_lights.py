@@ -318,6 +318,8 @@ def everything(lamps, x, u):
     total = black
     for lamp in lamps:
         y, p = lamp.sample(x, u)
+        z, q = lamp.sample_solid_angle(x, u)
+        total += z.p * lamp.pdf_solid_angle(x, y) + z.n * q
         total += lamp.radiance * p + y.p + y.n * (2.0 * y.slack) + Vec3(lamp.pdf(x, y), y.tilt.x, 0.0)
     return total
 

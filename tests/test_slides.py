@@ -113,7 +113,7 @@ def test_every_shade_is_in_the_table_and_names_its_slide():
 def test_shades_stand_in_slide_order():
     source = inspect.getsource(shade)
     order = [
-        "point_light", "area_diffuse", "area", "directional_light",
+        "point_light", "area_diffuse", "area", "area_solid_angle", "directional_light",
         "env_uniform", "env_cosine", "env_brightness", "env_brdf",
     ]  # fmt: skip
     assert re.findall(r"^def (\w+)\(", source, re.MULTILINE) == order
