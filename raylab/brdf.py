@@ -1,4 +1,4 @@
-"""BRDFs: eval(V, L) -> f_r in 1/sr, sample(V, N, u) -> w, p_w, pdf(V, w, N) in 1/sr.
+"""BRDFs: eval(V, L) -> f_r in 1/sr, sample(V, N, u) -> w, p_w, pdf(V, w, N) in 1/sr, lobe() -> k_s, n.
 
 A smooth surface (`is_specular()`) has no f_r to speak of: it is black in `eval` and cannot be met by chance. Instead
 `reflection(V, N)` is the share of light that it mirrors, `refraction(V, N)` the direction and share that it lets pass;
@@ -39,6 +39,9 @@ class Lambertian(NamedTuple):
 
     def pdf(self, V, w, N):
         return pdf_cos_hemisphere(N, w)
+
+    def lobe(self):
+        return black, 0.0
 
     def is_glossy(self):
         return False
@@ -84,6 +87,9 @@ class Phong(NamedTuple):
         diffuse = diffuse_share(self)
         lobe = pdf_phong_lobe(reflect(V, N), self.n, w)
         return diffuse * pdf_cos_hemisphere(N, w) + (1.0 - diffuse) * lobe
+
+    def lobe(self):
+        return self.k_s, self.n
 
     def is_glossy(self):
         return luminance(self.k_s) > 0.0

@@ -81,6 +81,11 @@ class AnyBrdf(NamedTuple):
             return 0.0
         return Lambertian(self.k_d).pdf(V, w, N)
 
+    def lobe(self):
+        if self.kinds.phong.has(self.kind):
+            return self.kinds.phong.of(self).lobe()
+        return black, 0.0
+
     def is_glossy(self):
         kinds = self.kinds
         if kinds.phong.has(self.kind):

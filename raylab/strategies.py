@@ -11,6 +11,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from raylab import glossy
 from raylab import shade as slides
 from raylab.direct import direct
 from raylab.errors import UserError
@@ -31,6 +32,9 @@ BUILT_IN: dict[str, tuple[Any, str]] = {
     "env_cosine": (slides.env_cosine, "environment"),
     "env_brightness": (slides.env_brightness, "environment"),
     "env_brdf": (slides.env_brdf, "environment"),
+    "glossy_jitter": (glossy.glossy_jitter, "glossy BRDF"),
+    "glossy_phong": (glossy.glossy_phong, "glossy BRDF"),
+    "glossy_normal": (glossy.glossy_normal, "glossy BRDF"),
 }
 NAMES = tuple(BUILT_IN)
 

@@ -2,5 +2,6 @@
 
 - `irradiance`: polygons, disks, spheres, skies, lights without area
 - `phong`: the lobe of the modified Phong model under a sky or a polygon
+- `glossy`: the jitters of "Creating glossy reflections" that are not Phong, under a sky
 - `variances`: exact variances of one sample of an estimator
 """
