@@ -2,7 +2,7 @@
 
 Each function sends one ray near the mirror direction R of V and looks up what it meets: a light or the environment.
 What it estimates is the light reflected by the lobe of `brdf.lobe()`, specular reflectance k_s and Phong exponent n;
-the diffuse part of a surface is left to the other slides. A ray below the horizon brings nothing. The three lobes:
+the diffuse part of a surface, and microfacets, are left to others. A ray below the horizon brings nothing. The lobes:
 
 glossy_jitter   w = normalize(R + offset), the offset uniform in a disk of radius a across R. So p(w) = 1 / (pi a^2
                 cos^3 alpha) while tan alpha <= a, alpha the angle from R, and f_r = k_s p(w) / (w . N). With
