@@ -130,7 +130,14 @@ TABLE = (
         ("raylab.shade.env_brightness", "raylab.shade.env_brdf"),
         "the captions of the two boxes are swapped on the slide",
     ),
-    Slide("Creating glossy reflections", ("raylab.sampling.sample_phong_lobe",), "matches Phong exactly"),
+    Slide(
+        "Creating glossy reflections",
+        ("raylab.glossy.glossy_jitter", "raylab.glossy.glossy_phong", "raylab.glossy.glossy_normal"),
+        "which BRDF each has stands in raylab.glossy",
+        scene="veach_plates",
+        figure="glossy_lobes",
+        test="test_glossy.py::test_phong_under_a_triangle",
+    ),
     Slide(
         "Depth of field (eye rays)",
         ("raylab.camera.ThinLens", "raylab.camera.PolygonAperture"),

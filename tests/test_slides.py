@@ -50,7 +50,6 @@ TO_COME = {
     "Diffuse surface in env. by Monte Carlo",
     "Arbitrary surface in env. by Monte Carlo (integral)",
     "Arbitrary surface in env. by Monte Carlo",
-    "Creating glossy reflections",
     "Depth of field (eye rays)",
     "Motion blur (time)",
 }

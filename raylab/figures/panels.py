@@ -64,6 +64,18 @@ def picture(scene: Scene, shade: str | Callable[..., Any] = "direct", **options:
     return image
 
 
+def look_at(origin: npt.ArrayLike, target: npt.ArrayLike) -> Array:
+    """The (4, 4) matrix of a camera at `origin` that looks at `target`, +z up."""
+    origin = np.asarray(origin, np.float64)
+    forward = np.asarray(target, np.float64) - origin
+    forward /= np.linalg.norm(forward)
+    left = np.cross((0.0, 0.0, 1.0), forward)
+    left /= np.linalg.norm(left)
+    matrix = np.eye(4)
+    matrix[:3, :] = np.stack([left, np.cross(forward, left), forward, origin], axis=1)
+    return matrix
+
+
 def error_map(pixels: Array, reference: Array) -> Array:
     """|picture - reference| of each pixel, mean over channels, in a logarithmic colour scale from LEAST to MOST."""
     relative = np.nanmean(np.abs(pixels - reference), axis=-1) / np.mean(reference)
