@@ -20,7 +20,7 @@ from raylab.errors import UserError
 from raylab.explain import explain, measured
 from raylab.image import Image
 from raylab.render import Plan
-from raylab.samplers import NAMES as SAMPLERS
+from raylab.samplers import ALL_NAMES as SAMPLERS
 
 INTERRUPTED = 130  # 128 + SIGINT, as a shell counts
 SCENE = click.argument("scene", type=click.Path(path_type=Path))

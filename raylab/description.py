@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+DEEPEST = 16  # rays in a row that `SceneDescription.max_depth` may ask for: behind glass, each doubles the work
 
 
 def _identity() -> Array:
@@ -254,10 +255,11 @@ class SceneDescription:
     shapes: tuple[Shape, ...] = ()
     lights: tuple[Light, ...] = ()
     environment: Environment | None = None
-    sampler: Literal["independent", "stratified", "latin", "sobol"] = "sobol"
+    sampler: Literal["independent", "stratified", "latin", "sobol", "centre"] = "sobol"
     spp: int = 16
     seed: int = 0
     hide_emitters: bool = False
+    max_depth: int = 10  # rays in a row, the eye ray included; only the shade "basic" asks for it
     name: str = "scene"
     path: Path | None = None
     warnings: tuple[str, ...] = ()

@@ -50,6 +50,10 @@ class Plan:
         given = [
             n for n, v in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)) if v is not None
         ]
+        if sampler == "centre" and (spp not in (None, 1) or seconds or relative_error):
+            raise UserError("the sampler 'centre' takes one sample of each pixel, further ones would be the same")
+        if sampler == "centre":
+            return cls(1, samples=1)
         if len(given) > 1:
             raise UserError(f"expected one of spp, seconds and relative_error, got {' and '.join(given)}")
         for name, value in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)):
@@ -112,7 +116,7 @@ def render(
     Parameters
     ----------
     shade : a name from `raylab.strategies.NAMES`, or shade(x, V, brdf, N, scene, rng), or shade(x, k_d, N, scene, rng).
-    sampler : "independent", "stratified", "latin" or "sobol"; the scene's own by default.
+    sampler : "independent", "stratified", "latin", "sobol" or "centre"; the scene's own by default.
     spp, seconds, relative_error : stop after so many samples a pixel, after a time, or at a noise level
         (`Image.relative_error`); at most one of them, spp of the scene by default.
     seed : picture number; the same seed gives the same bits for every number of threads.
@@ -129,9 +133,9 @@ def render(
     """
     described = scene.description
     name = sampler or described.sampler
-    if name not in samplers.NAMES:
-        raise UserError(f"unknown sampler {name!r}; expected one of {', '.join(samplers.NAMES)}")
-    if spp is None and seconds is None and relative_error is None:
+    if name not in samplers.ALL_NAMES:
+        raise UserError(f"unknown sampler {name!r}; expected one of {', '.join(samplers.ALL_NAMES)}")
+    if name != "centre" and spp is None and seconds is None and relative_error is None:
         spp = described.spp
     plan = Plan.make(name, spp, seconds, relative_error)
     threads = default_threads() if threads is None else threads

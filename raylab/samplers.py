@@ -4,7 +4,7 @@ A sampler gives each sample of each pixel a stream of numbers; the stream is wha
 `rng.number()` is uniform in [0, 1), `rng.square()` in the unit square. A sample draws dimension after dimension;
 what a scene does not need (a lens, a shutter) it does not draw, so no dimension is spent on it.
 
-`independent` numbers are unrelated. `stratified` points fall one into each cell of a grid over the unit square, for
+`centre` is not random: every point is the middle of its square. `independent` numbers are unrelated. `stratified` points fall one into each cell of a grid over the unit square, for
 each pair of dimensions. `latin` numbers (a Latin hypercube) fall one into each of n intervals, for each dimension, in
 an order of its own. `sobol` points are an Owen-scrambled Sobol' sequence, good at each prefix of 2^k points.
 The points of all but the first depend on one another within a stream, so an honest standard error compares several
@@ -40,6 +40,32 @@ class Counter(NamedTuple):
 
 def new_counter() -> Counter:
     return Counter(View(np.zeros(1, np.int64)))
+
+
+# --- centre ---
+
+
+@record
+class CentreStream(NamedTuple):
+    """Every point is the middle of the square."""
+
+    counter: Counter
+
+    def number(self):
+        return 0.5
+
+    def square(self):
+        return 0.5, 0.5
+
+
+@record
+class Centre(NamedTuple):
+    """One ray through the centre of each pixel (slide "Basic ray tracing"); one sample says all there is."""
+
+    counter: Counter
+
+    def stream(self, pixel, stream, sample):
+        return CentreStream(self.counter)
 
 
 # --- independent ---
@@ -310,10 +336,13 @@ def grid(n: int) -> tuple[int, int]:
 
 
 NAMES = ("independent", "stratified", "latin", "sobol")
+ALL_NAMES = (*NAMES, "centre")
 
 
 def make(name: str, seed: int, samples: int) -> Any:
     """The sampler called `name`; `samples` is the number of samples in one stream (cells, intervals)."""
+    if name == "centre":
+        return Centre(new_counter())
     if name == "independent":
         return Independent(seed, new_counter())
     if name == "stratified":

@@ -139,6 +139,7 @@ class _Builder:
             points=point_table(description.lights, self.placement),
             suns=sun_table(description.lights),
             environment=make_environment(description.environment),
+            max_depth=depth(description.max_depth),
             tally=View(np.zeros(TALLIES, np.int64)),
         )
 
@@ -160,6 +161,12 @@ class _Builder:
             return NoEmission()
         black = np.zeros(3)
         return Emission(View(np.stack([black if s.radiance is None else colour(s.radiance, s.name) for s in shapes])))
+
+
+def depth(rays: int) -> int:
+    if not (isinstance(rays, int) and 1 <= rays <= d.DEEPEST):
+        raise SceneError(f"max_depth must be a whole number from 1 to {d.DEEPEST}, got {rays}")
+    return rays
 
 
 FEATURES = (

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from raylab import glossy
 from raylab import shade as slides
+from raylab.basic import basic
 from raylab.direct import direct
 from raylab.errors import UserError
 from raylab.jit import njit
@@ -23,6 +24,7 @@ from raylab.vec3 import black
 _DIFFUSE, _ANY = ("x", "k_d", "N", "scene", "rng"), ("x", "V", "brdf", "N", "scene", "rng")
 BUILT_IN: dict[str, tuple[Any, str]] = {
     "direct": (direct, ""),
+    "basic": (basic, ""),
     "point_light": (slides.point_light, "point lights"),
     "area_diffuse": (slides.area_diffuse, "area lights"),
     "area": (slides.area, "area lights"),

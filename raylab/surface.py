@@ -38,6 +38,7 @@ class SceneData(NamedTuple):
     points: Any  # Table of PointLight or NoLight
     suns: Any  # Table of DirectionalLight or NoLight
     environment: Any
+    max_depth: int  # rays in a row, for `raylab.basic`
     tally: View  # (TALLIES,) int64
 
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from raylab.description import Camera, Environment, Light, SceneDescription
+from raylab.description import DEEPEST, Camera, Environment, Light, SceneDescription
 from raylab.io.xml_bsdfs import BSDFS
 from raylab.io.xml_colours import TEXTURES
 from raylab.io.xml_context import Context
@@ -55,7 +55,7 @@ def read(path: str | os.PathLike[str], parameters: Mapping[str, str] | None = No
         shapes=shapes,
         lights=lights,
         environment=environment,
-        hide_emitters=_integrator(root, integrators, context),
+        **_integrator(root, integrators, context),
         name=file.stem,
         path=file,
         warnings=tuple(context.warnings),
@@ -91,20 +91,30 @@ def _sensor(root: Node, sensors: list[Node], context: Context) -> tuple[Camera, 
     return camera, {} if sampling is None else vars(sampling)
 
 
-def _integrator(root: Node, integrators: list[Node], context: Context) -> bool:
-    """Whether to hide the emitters; warns if the file asks for more than direct light."""
+def _integrator(root: Node, integrators: list[Node], context: Context) -> dict[str, Any]:
+    """Whether to hide the emitters and how deep to follow mirrors; warns if the file asks for more than raylab does."""
     if not integrators:
         context.warn(root, "the file names no integrator; raylab renders direct light")
-        return False
+        return {}
     node = integrators[0]
     if node.type not in INTEGRATORS:
         raise node.error("unknown integrator; " + choices(node.type, INTEGRATORS, "known are"))
     hide_emitters = node.boolean("hide_emitters", False)
     if node.type != "direct":
         context.warn(node, "raylab renders direct light, whatever the integrator")
-        return hide_emitters
+        return {"hide_emitters": hide_emitters, **_depth(node, context)}
     for name in ("shading_samples", "emitter_samples", "bsdf_samples", "samples_per_pass", "block_size"):
         node.integer(name, 1, least=0)
     node.number("timeout", -1.0)
     node.finish()
-    return hide_emitters
+    return {"hide_emitters": hide_emitters}
+
+
+def _depth(node: Node, context: Context) -> dict[str, int]:
+    """`max_depth` as in Mitsuba 3, rays in a row; -1, without end, is raylab's own default."""
+    rays = node.integer("max_depth", -1, least=-1)
+    if rays == 0:
+        raise node.error('"max_depth" must be at least 1, or -1 for the default, got 0', "max_depth")
+    if rays > DEEPEST:
+        context.warn(node, f"raylab follows {DEEPEST} rays in a row at most", "max_depth")
+    return {} if rays == -1 else {"max_depth": min(rays, DEEPEST)}

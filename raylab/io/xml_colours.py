@@ -7,9 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from raylab.description import Array, Bitmap, Colour
-from raylab.io import spectrum
+from raylab.io import indices, spectrum
 from raylab.io.xml_context import Context
 from raylab.io.xml_node import Node
+from raylab.io.xml_tag import choices
 
 _KINDS = ("rgb", "spectrum", "float", "integer", "object")
 
@@ -31,6 +32,45 @@ def constant_reflectance(node: Node, name: str, default: float, context: Context
     if isinstance(colour, Bitmap):
         raise node.error(f'"{name}" takes one colour here, not a texture', name)
     return colour
+
+
+def complex_index(node: Node, context: Context) -> tuple[Array, Array]:
+    """eta and k of a conductor, both given as colours, or a `material` by name; "none" is a perfect mirror."""
+    given = [name for name in ("eta", "k") if node.has(name)]
+    if not given:
+        name = node.string("material", "none")
+        found = indices.metal(name)
+        if found is None:
+            raise node.error(f'unknown material "{name}"; ' + choices(name, ["none", *indices.METALS]), "material")
+        node.asked.update(dict.fromkeys(("eta", "k")))
+        return np.array(found[0]), np.array(found[1])
+    if len(given) == 1:
+        other = "k" if given == ["eta"] else "eta"
+        raise node.error(f'"{given[0]}" is given but "{other}" is not; a metal needs both', given[0])
+    if node.has("material"):
+        raise node.error('give either "material" or "eta" and "k", not both', "material")
+    return _index(node, "eta", context), _index(node, "k", context)
+
+
+def _index(node: Node, name: str, context: Context) -> Array:
+    """A part of a refractive index, unweighted by any illuminant; it may be above 1."""
+    value = node.ask(name, _KINDS)
+    if isinstance(value, Node) and (value.kind != "spectrum" or value.type != "uniform"):
+        raise node.error(f'"{name}" takes a number, a colour or a table, not <{value.kind} type="{value.type}">', name)
+    rgb = np.full(3, value) if isinstance(value, int | float) else _rgb(node, name, value, context, emitter=True)
+    if rgb.min() < 0:
+        raise node.error(f'"{name}" must not be negative, got ({_words(rgb)})', name)
+    return rgb
+
+
+def index(node: Node, name: str, default: str) -> float:
+    """A refractive index as a number or by name."""
+    value = node.ask(name, ("float", "integer", "string"), default)
+    if not isinstance(value, str):
+        return node.number(name, above=0)
+    if value not in indices.DIELECTRICS:
+        raise node.error(f'unknown material "{value}"; ' + choices(value, indices.DIELECTRICS), name)
+    return indices.DIELECTRICS[value]
 
 
 def emission(node: Node, name: str, context: Context) -> Array:

@@ -14,7 +14,7 @@ from raylab.io.xml_context import Context
 from raylab.io.xml_node import Node
 from raylab.io.xml_transform import is_rigid
 
-SamplerName = Literal["independent", "stratified", "sobol"]
+SamplerName = Literal["independent", "stratified", "sobol", "centre"]
 _AXES = ("x", "y", "diagonal", "smaller", "larger")
 _DIAGONAL_35MM = math.hypot(36, 24)  # mm
 _LARGEST = 65536  # pixels along one side
@@ -154,13 +154,13 @@ def _gaussian(node: Node, context: Context) -> Filter:
 
 def _sampler(name: SamplerName) -> Callable[[Node, Context], Sampling]:
     def read(node: Node, context: Context) -> Sampling:
-        if not node.boolean("jitter", True):
-            raise node.error("raylab does not support samplers without jitter", "jitter")
+        jitter, spp = node.boolean("jitter", True), node.integer("sample_count", 4, least=1)
+        if not jitter and (node.type != "stratified" or spp != 1):
+            raise node.error("without jitter raylab supports one sample, the pixel's centre, stratified", "jitter")
         if node.type == "orthogonal":
             node.integer("strength", 2, least=1)
-        return Sampling(
-            name, node.integer("sample_count", 4, least=1), node.integer("seed", 0, least=0, most=2**32 - 1)
-        )
+        seed = node.integer("seed", 0, least=0, most=2**32 - 1)
+        return Sampling(name if jitter else "centre", spp, seed)
 
     return read
 
