@@ -4,7 +4,7 @@ A sampler gives each sample of each pixel a stream of numbers; the stream is wha
 `rng.number()` is uniform in [0, 1), `rng.square()` in the unit square. A sample draws dimension after dimension;
 what a scene does not need (a lens, a shutter) it does not draw, so no dimension is spent on it.
 
-`centre` is not random: every point is the middle of its square. `independent` numbers are unrelated. `stratified` points fall one into each cell of a grid over the unit square, for
+`independent` numbers are unrelated. `stratified` points fall one into each cell of a grid over the unit square, for
 each pair of dimensions. `latin` numbers (a Latin hypercube) fall one into each of n intervals, for each dimension, in
 an order of its own. `sobol` points are an Owen-scrambled Sobol' sequence, good at each prefix of 2^k points.
 The points of all but the first depend on one another within a stream, so an honest standard error compares several

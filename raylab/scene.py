@@ -17,6 +17,7 @@ from raylab import description as d
 from raylab import quadrics
 from raylab.embree import EmbreeScene
 from raylab.emitters import AreaLights, colour, point_table, sun_table
+from raylab.errors import SceneError
 from raylab.geometry import MeshArrays, Placement, QuadricArrays, gather, quadric_box, quadric_row
 from raylab.palette import Palette
 from raylab.point import plane_table
@@ -164,6 +165,7 @@ class _Builder:
 
 
 def depth(rays: int) -> int:
+    """`max_depth`, checked."""
     if not (isinstance(rays, int) and 1 <= rays <= d.DEEPEST):
         raise SceneError(f"max_depth must be a whole number from 1 to {d.DEEPEST}, got {rays}")
     return rays
@@ -171,8 +173,7 @@ def depth(rays: int) -> int:
 
 FEATURES = (
     "area lights", "point lights", "directional lights", "environment", "glossy BRDF", "mirrors and glass",
-    "textures",
-    "smooth normals", "spheres, disks and cylinders", "lens", "motion",
+    "textures", "smooth normals", "spheres, disks and cylinders", "lens", "motion",
 )  # fmt: skip
 
 

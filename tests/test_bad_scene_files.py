@@ -26,6 +26,14 @@ def diffuse(reflectance: str) -> str:
     return f'<bsdf type="diffuse">\n{reflectance}</bsdf>'
 
 
+def conductor(inside: str) -> str:
+    return f'<bsdf type="conductor">\n{inside}</bsdf>'
+
+
+def dielectric(inside: str) -> str:
+    return f'<bsdf type="dielectric">\n{inside}</bsdf>'
+
+
 def film(inside: str) -> str:
     return f'<sensor type="perspective"><film type="hdrfilm">\n{inside}</film></sensor>'
 
@@ -44,7 +52,7 @@ CASES = [
     # unknown words
     (2, '<shape type="rectangel"/>', '<shape type="rectangel">: unknown shape', 'did you mean "rectangle"?'),
     (2, '<shape type="hair"/>', "raylab supports cube, cylinder, disk, obj, ply, rectangle, sphere"),
-    (2, '<bsdf type="conducter"/>', '<bsdf type="conducter">: unknown bsdf', "diffuse, phong, twosided"),
+    (2, '<bsdf type="conducter"/>', '<bsdf type="conducter">: unknown bsdf', "diffuse, phong", "twosided", 'did you mean "conductor"?'),
     (2, '<emitter type="directionel"/>', 'did you mean "directional"?'),
     (2, '<texture type="checkerboard"/>', "unknown texture", "bitmap"),
     (2, '<sensor type="orthographic"/>', "unknown sensor", "perspective", "thinlens"),
@@ -76,6 +84,26 @@ CASES = [
     (2, '<shape type="obj"/>', '<shape type="obj">: <string name="filename"> is missing'),
     (3, diffuse('<spectrum type="blackbody" name="reflectance"/>'), "emitters only"),
     (2, '<bsdf type="twosided"/>', "is missing"),
+    # mirrors and glass
+    (3, conductor('<string name="material" value="Gold"/>'), 'unknown material "Gold"', "Au", "none"),
+    (3, conductor('<rgb name="k" value="3,2,1"/>'), '"k" is given but "eta" is not', "needs both"),
+    (3, conductor('<float name="eta" value="1.5"/>'), '"eta" is given but "k" is not', "needs both"),
+    (4, conductor('<rgb name="eta" value="1"/><rgb name="k" value="3"/>\n<string name="material" value="Au"/>'),
+     'give either "material" or "eta" and "k"'),
+    (3, conductor('<rgb name="eta" value="1,-1,1"/><rgb name="k" value="3"/>'), '"eta" must not be negative', "(1, -1, 1)"),
+    (3, conductor('<rgb name="eta" value="1"/><string name="k" value="3"/>'), "<string", "must be given as <rgb>"),
+    (3, conductor('<spectrum type="d65" name="eta"/><rgb name="k" value="3"/>'), "a number, a colour or a table"),
+    (3, conductor('<rgb name="specular_reflectance" value="2"/>'), "a reflectance must lie in [0, 1]"),
+    (3, conductor('<float name="alpha" value="0.1"/>'), 'no parameter "alpha"'),
+    (3, dielectric('<float name="int_ior" value="0"/>'), '"int_ior" must be greater than 0', "got 0"),
+    (3, dielectric('<float name="ext_ior" value="-1.3"/>'), '"ext_ior" must be greater than 0', "got -1.3"),
+    (3, dielectric('<string name="int_ior" value="watr"/>'), 'unknown material "watr"', 'did you mean "water"?'),
+    (3, dielectric('<rgb name="int_ior" value="1.5"/>'), "must be given as <float> or <integer> or <string>"),
+    (3, dielectric('<rgb name="specular_transmittance" value="-1"/>'), "must lie in [0, 1]"),
+    (3, '<bsdf type="twosided">\n<bsdf type="dielectric"/></bsdf>', "lets light through"),
+    (3, '<integrator type="path">\n<integer name="max_depth" value="0"/></integrator>', '"max_depth" must be at least 1', "got 0"),
+    (3, '<integrator type="path">\n<integer name="max_depth" value="-2"/></integrator>', '"max_depth" must be from -1', "got -2"),
+    (3, '<integrator type="path">\n<float name="max_depth" value="3"/></integrator>', '"max_depth" must be given as <integer>'),
     (3, '<bsdf type="twosided">\n' + 3 * '<bsdf type="diffuse"/>' + "</bsdf>", "takes 2 <bsdf> at most"),
     (2, '<shape type="disk">' + 2 * '<bsdf type="diffuse"/>' + "</shape>", "takes 1 <bsdf> at most"),
     (2, '<shape type="disk">' + 2 * '<emitter type="area"/>' + "</shape>", "takes 1 <emitter> at most"),

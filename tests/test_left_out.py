@@ -79,6 +79,7 @@ def code() -> dict[str, str]:
         "constant sky": machine_code(outdoors(d.ConstantEnvironment(np.ones(3)), 4)),
         "image sky": machine_code(outdoors(d.ImageEnvironment(image), 4)),
         "glossy": machine_code(room(4, GLOSSY)),
+        "mirror": machine_code(room(4, d.Conductor())),
         "textured": machine_code(room(4, d.Diffuse(d.Bitmap(np.full((2, 2, 3), 0.5))))),
     }
 
@@ -113,9 +114,19 @@ def test_only_a_lobe_needs_powers(code):
     assert all("exp" not in calls(code[name]) for name in ("nothing", "lamp", "constant sky", "image sky", "textured"))
 
 
+def test_only_basic_ray_tracing_recurs(code):
+    """The ray tracer that calls itself is in no other kernel, be it of mirrors; Snell's law is not in a mirror's."""
+    assert all("raylab5basic" not in assembly for assembly in code.values())
+    assert "raylab5basic8radiance" in machine_code(room(4, d.Conductor()), "basic")
+    assert all(
+        "raylab7fresnel" not in code[name] for name in ("nothing", "lamp", "constant sky", "image sky", "glossy")
+    )
+
+
 def test_each_feature_makes_the_kernel_longer(code):
     assert size(code["nothing"]) < size(code["lamp"]) < size(code["glossy"])
     assert size(code["lamp"]) < size(code["textured"])
+    assert size(code["lamp"]) < size(code["mirror"])
     assert size(code["constant sky"]) < size(code["image sky"])
 
 

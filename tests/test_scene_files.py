@@ -14,9 +14,11 @@ import pytest
 
 from raylab.description import (
     Bitmap,
+    Conductor,
     ConstantEnvironment,
     Cube,
     Cylinder,
+    Dielectric,
     Diffuse,
     DirectionalLight,
     Disk,
@@ -31,6 +33,7 @@ from raylab.description import (
     Sphere,
 )
 from raylab.io.image_file import decode_srgb, write_exr, write_png
+from raylab.io.indices import METALS
 from raylab.io.mitsuba_xml import read
 from raylab.triangles import vertex_normals
 
@@ -362,6 +365,66 @@ def test_phong(tmp_path: Path) -> None:
     assert given.diffuse_reflectance.tolist() == [0.1, 0.2, 0.3]
     assert given.specular_reflectance.tolist() == [0.4] * 3
     assert given.exponent == 0
+
+
+def test_conductor(tmp_path: Path) -> None:
+    """A perfect mirror unless told otherwise; names and numbers as in Mitsuba 3."""
+    mirror = shape(tmp_path, '<bsdf type="conductor"/>')
+    assert isinstance(mirror.front, Conductor)
+    assert mirror.back is None
+    assert [*mirror.front.eta, *mirror.front.k, *mirror.front.specular_reflectance] == [0, 0, 0, 1, 1, 1, 1, 1, 1]
+    none = shape(tmp_path, '<bsdf type="conductor"><string name="material" value="none"/></bsdf>').front
+    assert [*none.eta, *none.k] == [0, 0, 0, 1, 1, 1]
+    gold = shape(tmp_path, '<bsdf type="conductor"><string name="material" value="Au"/></bsdf>').front
+    assert (tuple(gold.eta), tuple(gold.k)) == METALS["Au"]
+    tiN = shape(tmp_path, '<bsdf type="conductor"><string name="material" value="TiN_palik"/></bsdf>').front
+    assert tuple(tiN.eta) == METALS["TiN"][0]
+    numbers = '<rgb name="eta" value="0.2,1.4,3"/><float name="k" value="2.5"/>'
+    own = shape(
+        tmp_path,
+        f'<bsdf type="twosided"><bsdf type="conductor">{numbers}<rgb name="specular_reflectance" value="0.9"/></bsdf></bsdf>',
+    )
+    assert own.front is own.back
+    assert [*own.front.eta, *own.front.k, *own.front.specular_reflectance] == [
+        0.2,
+        1.4,
+        3,
+        2.5,
+        2.5,
+        2.5,
+        0.9,
+        0.9,
+        0.9,
+    ]
+    spectra = '<spectrum name="eta" value="400:2, 500:1.5, 800:2"/><spectrum name="k" value="0.5"/>'
+    tabulated = shape(tmp_path, f'<bsdf type="conductor">{spectra}</bsdf>').front
+    assert tabulated.eta == pytest.approx([1.75371, 1.54494, 1.73808], rel=SIX_DIGITS)  # Mitsuba 3.9.1
+    assert [*tabulated.k] == [0.5, 0.5, 0.5]
+
+
+def test_dielectric(tmp_path: Path) -> None:
+    """BK7 in air; on the back stands the same boundary the other way round."""
+    default = shape(tmp_path, '<bsdf type="dielectric"/>')
+    assert isinstance(default.front, Dielectric)
+    assert (default.front.int_ior, default.front.ext_ior) == (1.5046, 1.000277)
+    assert (default.back.int_ior, default.back.ext_ior) == (1.000277, 1.5046)
+    inside = """<string name="int_ior" value="diamond"/><float name="ext_ior" value="1.2"/>
+        <rgb name="specular_reflectance" value="0.1,0.2,0.3"/><float name="specular_transmittance" value="0.5"/>"""
+    glass = shape(tmp_path, f'<bsdf type="dielectric">{inside}</bsdf>').front
+    assert (glass.int_ior, glass.ext_ior) == (2.419, 1.2)
+    assert [*glass.specular_reflectance, *glass.specular_transmittance] == [0.1, 0.2, 0.3, 0.5, 0.5, 0.5]
+
+
+def test_basic_ray_tracing_is_asked_for_by_depth_and_by_one_sample_at_the_centre(tmp_path: Path) -> None:
+    for rays, expected, warnings in ((3, 3, 1), (-1, SceneDescription().max_depth, 1), (1000, 16, 2)):
+        path = tmp_path / "a.xml"
+        integrator = f'<integrator type="path"><integer name="max_depth" value="{rays}"/></integrator>'
+        path.write_text(f'<scene version="3.0.0">\n{integrator}{SENSOR}</scene>')
+        scene = read(path)
+        assert scene.max_depth == expected
+        assert len(scene.warnings) == warnings
+    one = '<integer name="sample_count" value="1"/><boolean name="jitter" value="false"/>'
+    assert camera_scene(tmp_path, f'<sampler type="stratified">{one}</sampler>').sampler == "centre"
 
 
 def bitmap(folder: Path, inside: str = "", name: str = "t.exr") -> Bitmap:

@@ -45,6 +45,25 @@ def through_lens(blades: int) -> Scene:
     return Scene(replace(room(4).description, camera=eye))
 
 
+def mirrors() -> Scene:
+    """A metal ball and a glass ball on a floor, under a lamp, a point light and a sky."""
+    glass = d.Dielectric(1.5, 1.0, np.array([1.0, 0.9, 0.8]), np.array([0.9, 1.0, 0.9]))
+    gold = d.Conductor(np.array([0.2, 0.4, 1.3]), np.array([3.9, 2.4, 1.9]))
+    return Scene(
+        d.SceneDescription(
+            camera=camera(4),
+            shapes=(
+                d.Rectangle(to_world=moved(0, 0, 0, 4, 4, 1), front=d.Diffuse(), back=d.Diffuse()),
+                d.Sphere(center=np.array([-0.7, 0, 0.8]), radius=0.7, front=glass, back=glass.inside),
+                d.Sphere(center=np.array([0.9, 0, 0.8]), radius=0.7, front=gold),
+                lamp(),
+            ),
+            lights=(d.PointLight(np.array([-2.0, -2, 4]), np.full(3, 5.0)),),
+            environment=d.ConstantEnvironment(np.full(3, 0.5)),
+        )
+    )
+
+
 def scenes() -> dict[str, tuple[Scene, str, str]]:
     image = np.random.default_rng(3).random((6, 12, 3))
     texture = d.Diffuse(d.Bitmap(np.random.default_rng(4).random((3, 5, 3))))
@@ -64,6 +83,8 @@ def scenes() -> dict[str, tuple[Scene, str, str]]:
         "quadrics": (quadrics(), "direct", "independent"),
         "lens": (through_lens(0), "area", "sobol"),
         "lens with blades": (through_lens(5), "area", "stratified"),
+        "mirrors": (mirrors(), "direct", "independent"),
+        "basic": (mirrors(), "basic", "independent"),
         "texture and sun": (Scene(sun), "direct", "independent"),
     }
 

@@ -53,11 +53,16 @@ def complex_index(node: Node, context: Context) -> tuple[Array, Array]:
 
 
 def _index(node: Node, name: str, context: Context) -> Array:
-    """A part of a refractive index, unweighted by any illuminant; it may be above 1."""
+    """A part of a refractive index; unlike a reflectance it may be above 1."""
     value = node.ask(name, _KINDS)
     if isinstance(value, Node) and (value.kind != "spectrum" or value.type != "uniform"):
         raise node.error(f'"{name}" takes a number, a colour or a table, not <{value.kind} type="{value.type}">', name)
-    rgb = np.full(3, value) if isinstance(value, int | float) else _rgb(node, name, value, context, emitter=True)
+    if isinstance(value, int | float):
+        rgb = np.full(3, float(value))
+    elif isinstance(value, tuple):
+        rgb = spectrum.integrate(spectrum.tabulated(*value), spectrum.d65())
+    else:
+        rgb = _rgb(node, name, value, context, emitter=True)
     if rgb.min() < 0:
         raise node.error(f'"{name}" must not be negative, got ({_words(rgb)})', name)
     return rgb
