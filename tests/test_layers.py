@@ -15,7 +15,9 @@ ORDER = [
     "solid_angle", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point", "lights", "environment",
     "materials", "quadrics", "callbacks", "embree", "surface", "shadow", "shade", "glossy", "direct", "basic",
     "camera", "triangles", "geometry", "emitters", "palette", "sky", "sensor", "scene", "strategies", "pixels",
-    "image", "render", "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "study",
+    "image", "render",
+    "probe",
+    "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "study",
     "figures", "demo", "stats", "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
