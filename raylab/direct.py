@@ -1,23 +1,26 @@
 """direct: all light of a scene at once, each kind by the best of the lecture's methods for it.
 
 Area lights are sampled over their surfaces, a smooth sky by the BRDF, an image by its brightness. Where a glossy
-surface or an image is about, two methods are combined by the balance heuristic (Veach and Guibas 1995): each sample
-is divided by the density that both methods together have there, so neither a small light nor a narrow lobe makes
-noise. Which of this a scene needs is known when its kernel is compiled. In a smooth surface no light can be met but by
-following the one ray that it reflects, or the one that it refracts.
+surface or an image is about, two methods are combined by the balance heuristic (`raylab.mis`): each sample counts as
+far as its own method was the likelier one to find it there, so neither a small light nor a narrow lobe makes noise. Of
+more than `light_choice.MANY` lights one is sampled, chosen by its power. Which of this a scene needs is known when its
+kernel is compiled. In a smooth surface no light can be met but by following the one ray that it reflects, or the one
+that it refracts.
 """
 
 from __future__ import annotations
 
 import math
 
+from raylab.beyond import one_light_power, seen_toward
 from raylab.brdf import reflect
 from raylab.embree import TNEAR
 from raylab.jit import njit
-from raylab.point import dist_sqr
+from raylab.lights import to_area
+from raylab.mis import balance
 from raylab.shade import area, directional_light, env_brdf, point_light
 from raylab.shadow import shadow, shadow_toward
-from raylab.surface import LIGHT, SHADOW_RAYS, intersect, round32
+from raylab.surface import SHADOW_RAYS, intersect, round32
 from raylab.vec3 import black, dot, luminance, normalize
 
 
@@ -29,7 +32,10 @@ def direct(x, V, brdf, N, scene, rng):
     result = point_light(x, V, brdf, N, scene, rng) + directional_light(x, V, brdf, N, scene, rng)
     if scene.materials.glossy() or scene.environment.by_brightness():
         return result + combined(x, V, brdf, N, scene, rng)
-    result += area(x, V, brdf, N, scene, rng)
+    if scene.choice.many():
+        result += one_light_power(x, V, brdf, N, scene, rng)
+    else:
+        result += area(x, V, brdf, N, scene, rng)
     if scene.environment.present():
         result += env_brdf(x, V, brdf, N, scene, rng)
     return result
@@ -37,23 +43,33 @@ def direct(x, V, brdf, N, scene, rng):
 
 @njit
 def combined(x, V, brdf, N, scene, rng):
-    """One sample of each light, one of the sky, one of the BRDF: sum of f / (p_light + p_brdf)."""
+    """One sample of each light (or of one of many), one of the sky, one of the BRDF: sum of f / (p_light + p_brdf)."""
     result = black
-    for light in scene.lights:
-        y, p_y = light.sample(x, rng.square())
-        if not shadow(scene, x, y):
-            L = normalize(y - x)
-            to_area = max(0.0, dot(-L, y.n)) / dist_sqr(x, y)
-            p = p_y + brdf.pdf(V, L, N) * to_area
-            result += light.radiance * brdf.eval(V, L) * (max(0.0, dot(L, N)) * to_area / p)
+    if scene.choice.many():
+        i, share = scene.choice.choose(rng.square())
+        result += by_light(x, V, brdf, N, scene, rng, scene.lights[i], share)
+    else:
+        for light in scene.lights:
+            result += by_light(x, V, brdf, N, scene, rng, light, 1.0)
     if scene.environment.present():
         w, p_w = scene.environment.sample(N, rng.square())
         if p_w > 0.0 and not shadow_toward(scene, x, w):
-            p = p_w + brdf.pdf(V, w, N)
-            result += scene.environment.eval(w) * brdf.eval(V, w) * (max(0.0, dot(w, N)) / p)
+            weight = balance(p_w, brdf.pdf(V, w, N))
+            result += scene.environment.eval(w) * brdf.eval(V, w) * (max(0.0, dot(w, N)) * weight / p_w)
     if brdf.is_glossy() or scene.environment.present():
         result += by_brdf(x, V, brdf, N, scene, rng)
     return result
+
+
+@njit
+def by_light(x, V, brdf, N, scene, rng, light, share):
+    """A sample of a light that is chosen with probability `share`, weighed against the density of the BRDF's."""
+    y, p_y = light.sample(x, rng.square())
+    if shadow(scene, x, y):
+        return black
+    L, p, jacobian = normalize(y - x), share * p_y, to_area(x, y)
+    weight = balance(p, brdf.pdf(V, L, N) * jacobian)
+    return light.radiance * brdf.eval(V, L) * (max(0.0, dot(L, N)) * jacobian * weight / p)
 
 
 @njit
@@ -62,17 +78,10 @@ def by_brdf(x, V, brdf, N, scene, rng):
     w, p_w = brdf.sample(V, N, rng.square())
     if p_w <= 0.0 or dot(w, N) <= 0.0 or dot(w, x.n) <= 0.0:
         return black
-    scene.tally[SHADOW_RAYS] += 1
-    hit = intersect(scene, round32(x.p + x.n * x.slack), round32(w), TNEAR, math.inf)
-    f = brdf.eval(V, w) * dot(w, N)
-    if not hit.found:
-        return scene.environment.eval(w) * f / (p_w + scene.environment.pdf(N, w))
-    light = scene.shapes[hit.shape, LIGHT]
-    if light < 0 or not hit.front:
-        return black
-    to_area = max(0.0, -dot(w, hit.x.n)) / dist_sqr(x, hit.x)
-    p_y = scene.lights[light].pdf(x, hit.x)
-    return scene.emission.of_shape(hit.shape) * f * (to_area / (p_w * to_area + p_y))
+    L, light, p_light = seen_toward(scene, x, N, w)
+    if scene.choice.many() and light >= 0:
+        p_light *= scene.choice.shares[light]
+    return L * brdf.eval(V, w) * (dot(w, N) * balance(p_w, p_light) / p_w)
 
 
 @njit

@@ -17,6 +17,7 @@ from raylab.record import Table
 from raylab.view import View
 
 Array = npt.NDArray[np.float64]
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 _SHAPES = {
     lights.TRIANGLE: ("triangle", lights.TriangleShape()),
     lights.RECTANGLE: ("rectangle", lights.RectangleShape()),
@@ -113,6 +114,11 @@ class AreaLights:
         p, e1, e2, n, tilt = (vectors.get(name, np.zeros(3)) for name in ("p", "e1", "e2", "n", "tilt"))
         self.rows.append(np.concatenate([[kind], radiance, p, e1, e2, n, [area, slack], tilt, [first, triangles]]))
         return len(self.rows) - 1
+
+    def power(self) -> Array:
+        """Luminance times area of each light: its power, but for a factor of pi and the unit of length."""
+        rows = np.array(self.rows).reshape(-1, lights.ROW)
+        return rows[:, 1:4] @ LUMINANCE * rows[:, 16]
 
     def table(self) -> Table:
         """`scene.lights`, compiled for the kinds that occur."""

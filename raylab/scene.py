@@ -19,6 +19,7 @@ from raylab.embree import EmbreeScene
 from raylab.emitters import AreaLights, colour, point_table, sun_table
 from raylab.errors import SceneError
 from raylab.geometry import MeshArrays, Placement, QuadricArrays, gather, quadric_box, quadric_row
+from raylab.light_choice import make_choice
 from raylab.palette import Palette
 from raylab.point import plane_table
 from raylab.record import Table
@@ -141,6 +142,7 @@ class _Builder:
             suns=sun_table(description.lights),
             environment=make_environment(description.environment),
             max_depth=depth(description.max_depth),
+            choice=make_choice(self.area_lights.power()),
             tally=View(np.zeros(TALLIES, np.int64)),
         )
 

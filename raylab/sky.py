@@ -9,13 +9,12 @@ import numpy.typing as npt
 
 from raylab import description as d
 from raylab import environment as env
-from raylab.emitters import colour
+from raylab.emitters import LUMINANCE, colour
 from raylab.errors import SceneError
 from raylab.vec3 import Vec3
 from raylab.view import View
 
 Array = npt.NDArray[np.float64]
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def make_environment(described: d.Environment | None) -> Any:
@@ -40,11 +39,11 @@ def gradient_environment(described: d.GradientEnvironment) -> env.GradientEnviro
             f"environment: gradient must be (3, 3), each row no longer than the radiance {radiance.tolist()} (the "
             f"light would be negative somewhere), got\n{gradient}"
         )
-    slope = _LUMINANCE @ gradient
+    slope = LUMINANCE @ gradient
     b = float(np.linalg.norm(slope))
     axis = slope / b if b > 0.0 else np.array([0.0, 0.0, 1.0])
     red, green, blue = (Vec3(*row) for row in gradient)
-    a = max(float(_LUMINANCE @ radiance), 1e-300)
+    a = max(float(LUMINANCE @ radiance), 1e-300)
     return env.GradientEnvironment(Vec3(*radiance), red, green, blue, a, b, Vec3(*axis))
 
 
@@ -63,7 +62,7 @@ def image_environment(described: d.ImageEnvironment) -> Any:
     if smooth and len(pixels) < 2:
         pixels = np.repeat(pixels, 2, axis=0)
     height, width = pixels.shape[:2]
-    brightness = pixels.astype(np.float64) @ _LUMINANCE
+    brightness = pixels.astype(np.float64) @ LUMINANCE
     if not brightness.max() > 0.0:
         return env.ConstantEnvironment(Vec3(0.0, 0.0, 0.0))
     if smooth:

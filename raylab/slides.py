@@ -145,6 +145,19 @@ TABLE = (
     ),
     Slide("Motion blur (time)", (), NOT_YET),
     Slide("The Blue Umbrella", (), "picture"),
+    Slide(
+        "After the last slide (by light or by BRDF?)",
+        ("raylab.beyond.mis_balance", "raylab.beyond.mis_power", "raylab.mis.balance", "raylab.mis.power"),
+        "by both: multiple importance sampling combines them",
+        scene="veach_plates",
+        test="test_mis.py::test_neither_technique_alone_is_safe_but_both_together_are",
+    ),
+    Slide(
+        "After the last slide (many lights)",
+        ("raylab.beyond.one_light_uniform", "raylab.beyond.one_light_power", "raylab.light_choice.alias_table"),
+        "one light for all",
+        test="test_mis.py::test_variance_of_one_light_of_two",
+    ),
 )
 
 

@@ -17,7 +17,8 @@ from raylab.sampling import PI, turn
 from raylab.vec3 import cross, dot, length
 
 FAR = 2.0**-10  # size of a light divided by its distance
-SMALL = 0.1  # sr; below, a rectangle is two triangles
+SMALL = 0.1  # sr; below, the angle of a rectangle is the sum of two triangles'
+TINY = 2.0**-18  # sr; below, it is sampled as two triangles as well, for Urena's angles are known to 2^-50 sr or so
 FLAT = 4.0 * 2.0**-53  # height over the plane of a light, in sizes, that is rounding
 
 
@@ -134,11 +135,10 @@ def corner(x, y, z):
 
 @njit
 def sample_rectangle_angle(a, e1, e2, u):
-    """Large: Urena, Fajardo, King 2013. Small, edge-on or no rectangle: one of two triangles."""
-    if is_square(e1, e2):
+    """Urena, Fajardo, King 2013; where that cancels, or for a parallelogram, one of two triangles."""
+    if is_square(e1, e2) and rectangle_angle(a, e1, e2) >= TINY:
         x0, x1, y0, y1, z = local_rectangle(a, e1, e2)
-        if corner(x1, y1, z) - corner(x0, y1, z) - corner(x1, y0, z) + corner(x0, y0, z) >= SMALL:
-            return urena(x0, x1, y0, y1, -z, u)
+        return urena(x0, x1, y0, y1, -z, u)
     first, second = triangle_angle(a, e1, e2), triangle_angle(a + e1 + e2, -e1, -e2)
     share = first / (first + second)
     if u[0] < share:

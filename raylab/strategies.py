@@ -11,7 +11,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from raylab import glossy
+from raylab import beyond, glossy
 from raylab import shade as slides
 from raylab.basic import basic
 from raylab.direct import direct
@@ -37,6 +37,10 @@ BUILT_IN: dict[str, tuple[Any, str]] = {
     "glossy_jitter": (glossy.glossy_jitter, "glossy BRDF"),
     "glossy_phong": (glossy.glossy_phong, "glossy BRDF"),
     "glossy_normal": (glossy.glossy_normal, "glossy BRDF"),
+    "mis_balance": (beyond.mis_balance, "area lights or environment"),
+    "mis_power": (beyond.mis_power, "area lights or environment"),
+    "one_light_uniform": (beyond.one_light_uniform, "area lights"),
+    "one_light_power": (beyond.one_light_power, "area lights"),
 }
 NAMES = tuple(BUILT_IN)
 
@@ -95,7 +99,7 @@ def strategy(shade: str | Callable[..., Any], scene: Scene) -> Any:
     if shade not in BUILT_IN:
         raise UserError(f"unknown shade {shade!r}; expected one of {', '.join(NAMES)}")
     needs, diffuse = BUILT_IN[shade][1], shade in ("area_diffuse", "env_uniform", "env_cosine")
-    if needs and needs not in scene.features:
+    if needs and scene.features.isdisjoint(needs.split(" or ")):
         there = ", ".join(sorted(scene.features)) or "nothing of the kind"
         raise UserError(f"shade {shade!r} needs {needs}, but the scene has {there}")
     if diffuse and "glossy BRDF" in scene.features:

@@ -39,6 +39,7 @@ class SceneData(NamedTuple):
     suns: Any  # Table of DirectionalLight or NoLight
     environment: Any
     max_depth: int  # rays in a row, for `raylab.basic`
+    choice: Any  # FewLights or ManyLights: which of the area lights to sample
     tally: View  # (TALLIES,) int64
 
 

@@ -19,6 +19,7 @@ LECTURE = {
     "Creating soft shadows": 1, "Illumination as integration": 4, "Area source by Monte Carlo": 4,
     "Diffuse surface in env. by Monte Carlo": 2, "Arbitrary surface in env. by Monte Carlo": 2,
     "Creating glossy reflections": 1, "The Blue Umbrella": 1,
+    "After the last slide": 2,
 }  # fmt: skip
 
 
@@ -52,6 +53,8 @@ TO_COME = {
     "Arbitrary surface in env. by Monte Carlo",
     "Depth of field (eye rays)",
     "Motion blur (time)",
+    "After the last slide (by light or by BRDF?)",
+    "After the last slide (many lights)",
 }
 
 
