@@ -69,8 +69,20 @@ TABLE = (
         figure="ladder_area_diffuse",
         test="test_ladders.py::test_step_3_over_the_light_tends_to_step_4_with_order_1",
     ),
-    Slide("Area source by Monte Carlo (integral, diffuse)", ("raylab.shade.area_diffuse",)),
-    Slide("Area source by Monte Carlo (diffuse)", ("raylab.shade.area_diffuse",)),
+    Slide(
+        "Area source by Monte Carlo (integral, diffuse)",
+        ("raylab.shade.area_diffuse",),
+        scene="soft_shadows",
+        figure="mc_area_diffuse",
+        test="test_closed_form_renders.py::test_variance_of_a_rectangle",
+    ),
+    Slide(
+        "Area source by Monte Carlo (diffuse)",
+        ("raylab.shade.area_diffuse",),
+        scene="cornell_box",
+        figure="mc_cornell_box",
+        test="test_closed_form_renders.py::test_area_lights",
+    ),
     Slide(
         "Illumination as integration (any BRDF, over the light)",
         (
@@ -85,8 +97,20 @@ TABLE = (
         figure="ladder_area_brdf",
         test="test_ladders.py::test_step_4_over_the_light_is_the_closed_form",
     ),
-    Slide("Area source by Monte Carlo (integral, any BRDF)", ("raylab.shade.area",)),
-    Slide("Area source by Monte Carlo", ("raylab.shade.area", "raylab.shade.area_solid_angle")),
+    Slide(
+        "Area source by Monte Carlo (integral, any BRDF)",
+        ("raylab.shade.area",),
+        scene="veach_plates",
+        figure="mc_area_brdf",
+        test="test_closed_form_renders.py::test_phong_under_a_polygon",
+    ),
+    Slide(
+        "Area source by Monte Carlo",
+        ("raylab.shade.area", "raylab.shade.area_solid_angle"),
+        scene="veach_plates",
+        figure="mc_plates",
+        test="test_closed_form_renders.py::test_light_sampling_and_both_agree_on_a_glossy_surface",
+    ),
     Slide(
         "Illumination as integration (Lambertian, over directions)",
         (
@@ -104,8 +128,17 @@ TABLE = (
     Slide(
         "Diffuse surface in env. by Monte Carlo (integral)",
         ("raylab.sampling.pdf_hemisphere", "raylab.sampling.pdf_cos_hemisphere"),
+        scene="ball_under_sky",
+        figure="mc_sky_densities",
+        test="test_closed_form_renders.py::test_variance_under_a_sky",
     ),
-    Slide("Diffuse surface in env. by Monte Carlo", ("raylab.shade.env_uniform", "raylab.shade.env_cosine")),
+    Slide(
+        "Diffuse surface in env. by Monte Carlo",
+        ("raylab.shade.env_uniform", "raylab.shade.env_cosine"),
+        scene="ball_under_sky",
+        figure="mc_ball_under_sky",
+        test="test_closed_form_renders.py::test_gradient_sky",
+    ),
     Slide(
         "Illumination as integration (any BRDF, over directions)",
         (
@@ -124,11 +157,17 @@ TABLE = (
         "Arbitrary surface in env. by Monte Carlo (integral)",
         ("raylab.brdf.Phong", "raylab.environment.ImageEnvironment"),
         "p proportional to the BRDF, and to the brightness",
+        scene="hdr_sky",
+        figure="mc_lobe_densities",
+        test="test_closed_form_renders.py::test_variance_of_a_lobe_of_exponent_20",
     ),
     Slide(
         "Arbitrary surface in env. by Monte Carlo",
         ("raylab.shade.env_brightness", "raylab.shade.env_brdf"),
         "the captions of the two boxes are swapped on the slide",
+        scene="hdr_sky",
+        figure="errata_captions",
+        test="test_closed_form_renders.py::test_image_sky",
     ),
     Slide(
         "Creating glossy reflections",

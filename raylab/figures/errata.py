@@ -145,8 +145,8 @@ def errata_cosines(path: Path) -> None:
 @figure(
     "errata_light_normal",
     "Area source by Monte Carlo",
-    """A ball of light has another normal at each point. With one normal for all of it, downwards, all of its lower side
-    shines down with full strength: the floor below is up to 1.92 times too bright.""",
+    """A ball of light has another normal at each point. With one normal for all of it, downwards, all of its lower
+    side shines down with full strength: the floor below is up to 1.92 times too bright.""",
 )
 def errata_light_normal(path: Path) -> None:
     image = panels.picture(ball_of_light(), normals, spp=SPP, sampler="sobol").mean
@@ -157,10 +157,10 @@ def errata_light_normal(path: Path) -> None:
 @figure(
     "errata_directions",
     "Arbitrary surface in env. by Monte Carlo",
-    """A ball in the air under a sky that shines from below as well. With the slide's unclamped dot(w, N), what is below
-    the horizon is subtracted: the floor loses half of its light, and the under side of the ball turns negative (blue).
-    With a direction handed to the shadow test of points, only what is nearer than x + w casts a shadow: none on the
-    floor. With a reflectance in place of k_d everything is π times too bright.""",
+    """A ball in the air under a sky that shines from below as well. With the slide's unclamped dot(w, N), what is
+    below the horizon is subtracted: the floor loses half of its light, and the under side of the ball turns
+    negative (blue). With a direction handed to the shadow test of points, only what is nearer than x + w casts a
+    shadow: none on the floor. With a reflectance in place of k_d everything is π times too bright.""",
 )
 def errata_directions(path: Path) -> None:
     image = panels.picture(ball_in_the_air(), directions, spp=SPP, sampler="sobol").mean
@@ -173,9 +173,9 @@ def errata_directions(path: Path) -> None:
 @figure(
     "errata_without_view",
     "Arbitrary surface in env. by Monte Carlo (integral)",
-    """The slide's brdf.sample(N) does not know V, so its lobe can only be around the normal. It still is a density, and
-    the picture is right on average; but where the true lobe is, it hardly ever looks, and the variance is infinite.
-    64 samples each, exponent 20.""",
+    """The slide's brdf.sample(N) does not know V, so its lobe can only be around the normal. It still is a density,
+    and the picture is right on average; but where the true lobe is, it hardly ever looks, and the variance is
+    infinite. 64 samples each, exponent 20.""",
 )
 def errata_without_view(path: Path) -> None:
     image = 2.0 * panels.picture(stage(6.0, 20.0), without_view, spp=SPP, sampler="independent").mean

@@ -55,10 +55,10 @@ def lobes(axes: Any, n: float, degrees: float, low: float, high: float) -> None:
     SLIDE,
     """Light reflected per solid angle in the plane of incidence, f_r cos θ, by the three jitters. Left: a narrow lobe
     seen from above, where a jittered normal (exponent 4n + 1) and Phong are nearly the same curve, and the disk of
-    offsets has their width but a rim. Middle: a broad lobe at a grazing angle. The horizon at 90° cuts all of them; the
-    jittered normal is high because it is narrow across this plane; Phong's cosine takes most away, so that the mirror
-    direction (dashed) is not the brightest. Right: what is left of a constant sky, by closed forms: the two that only
-    look lose what the horizon cuts off, Phong loses by its cosine long before.""",
+    offsets has their width but a rim. Middle: a broad lobe at a grazing angle. The horizon at 90° cuts all of them;
+    the jittered normal is high because it is narrow across this plane; Phong's cosine takes most away, so that the
+    mirror direction (dashed) is not the brightest. Right: what is left of a constant sky, by closed forms: the two
+    that only look lose what the horizon cuts off, Phong loses by its cosine long before.""",
 )
 def glossy_lobes(path: Path) -> None:
     with panels.plots(path, 1, 3, 17.0, 6.0) as (narrow, grazing, share):
@@ -103,8 +103,8 @@ def stage(height: float, exponent: float) -> Scene:
     SLIDE,
     """One reflected ray per sample, 64 samples, exponent 60; floor and ball reflect the lamps only. Phong's lobe is
     round and blurs sideways as far as lengthwise, and it darkens with the angle of incidence; so is the disk of
-    offsets, with a rim instead of a tail. A jittered normal blurs sideways only cos θ times as far: a little narrower
-    above, streaks as on a wet street below.""",
+    offsets, with a rim instead of a tail. A jittered normal blurs sideways only cos θ times as far: a little
+    narrower above, streaks as on a wet street below.""",
 )
 def glossy_jitters(path: Path) -> None:
     shown = []

@@ -69,8 +69,8 @@ def over_the_light(path: Path, title: str, f_r: ladders.Function, truth: float) 
     "ladder_area_diffuse",
     "Illumination as integration (Lambertian, over the light)",
     """Step 3, a bunch of n small area sources, tends to step 4, the integral, like 1/n: in two dimensions the parts
-    have the side h = 1/√n, and the middle of a part is exact up to h². Monte Carlo's error falls like 1/√N only. Both
-    against Lambert's closed form.""",
+    have the side h = 1/√n, and the middle of a part is exact up to h². Monte Carlo's error falls like 1/√N only.
+    Both against Lambert's closed form.""",
 )
 def ladder_area_diffuse(path: Path) -> None:
     over_the_light(
