@@ -82,6 +82,9 @@ class Dielectric:
         return replace(self, int_ior=self.ext_ior, ext_ior=self.int_ior)
 
 
+Distribution = Literal["beckmann", "ggx"]
+
+
 @dataclass(frozen=True, eq=False)
 class RoughConductor:
     """Metal of microfacets of index `eta` + i `k` relative to the air; roughness alpha > 0 along u and v."""
@@ -91,7 +94,7 @@ class RoughConductor:
     specular_reflectance: Array = field(default_factory=lambda: _rgb(1.0))
     alpha_u: float = 0.1
     alpha_v: float = 0.1
-    distribution: Literal["beckmann", "ggx"] = "beckmann"
+    distribution: Distribution = "beckmann"
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +109,7 @@ class RoughPlastic:
     int_ior: float = 1.49
     ext_ior: float = 1.000277
     alpha: float = 0.1
-    distribution: Literal["beckmann", "ggx"] = "beckmann"
+    distribution: Distribution = "beckmann"
     nonlinear: bool = False
 
 

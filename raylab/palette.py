@@ -140,6 +140,8 @@ def _rough_conductor(palette: Palette, material: d.RoughConductor) -> list[float
     specular = reflectance(material.specular_reflectance, f"{what} specular_reflectance")
     alphas = [alpha(v, f"{what} {n}") for n, v in (("alpha_u", material.alpha_u), ("alpha_v", material.alpha_v))]
     kind = distribution(material.distribution, what)
+    if alphas[0] != alphas[1]:
+        raise SceneError(f"{what}: alpha_u and alpha_v must be equal, got {alphas[0]:g} and {alphas[1]:g}")
     return row(k.ROUGH_CONDUCTOR, BLACK, specular, 1.0, *eta, *absorption, kind, *alphas)
 
 

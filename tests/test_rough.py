@@ -9,9 +9,11 @@ import pytest
 from helpers import COMPILED, U53, array, gauss, size
 
 from raylab import fresnel, rough
+from raylab.brdf import reflect
 from raylab.jit import njit
 from raylab.microfacet import BECKMANN, GGX, Microfacets
 from raylab.rough import TABLE, RoughConductor, RoughPlastic, plastic_table, transmittance
+from raylab.smooth import Conductor
 from raylab.vec3 import Vec3
 from raylab.view import View
 
@@ -97,6 +99,24 @@ def test_nothing_is_reflected_from_below_or_to_below(brdf):
     w, p = brdf.sample(direction(89.99, 0.5), Z, (0.999, 0.5))
     assert p > 0.0
     assert all(map(math.isfinite, brdf.eval(direction(89.99, 0.5), w)))
+
+
+@pytest.mark.parametrize("kind", [GGX, BECKMANN])
+@pytest.mark.parametrize("degrees", [0, 45, 80])
+def test_a_nearly_smooth_surface_reflects_like_a_mirror(kind, degrees):
+    """alpha -> 0: f cos / p of each sample tends to Fresnel's reflectance, and the sample to the mirror direction.
+
+    A slope of r alpha turns the mirror direction by 2 r alpha; the middle of the square has r < 2.
+    """
+    alpha, V = 1e-4, direction(degrees, 0.4)
+    brdf, smooth = metal(kind, alpha, alpha), Conductor(*GOLD, WHITE)
+    mirror = array(reflect(V, Z))
+    for u1 in (0.1, 0.5, 0.7):
+        for u2 in (0.1, 0.4, 0.9):
+            w, p = brdf.sample(V, Z, (u1, u2))
+            assert np.linalg.norm(array(w) - mirror) <= 4 * alpha
+            got = array(brdf.eval(V, w)) * w.z / p
+            assert got == pytest.approx(array(smooth.reflection(V, Z)), rel=40 * alpha)
 
 
 # --- the tables of rough plastic ---

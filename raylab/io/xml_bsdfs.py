@@ -8,6 +8,7 @@ from raylab.description import Conductor, Dielectric, Diffuse, Material, Phong
 from raylab.io.xml_colours import complex_index, constant_reflectance, index, reflectance
 from raylab.io.xml_context import Context
 from raylab.io.xml_node import Node
+from raylab.io.xml_rough import rough_conductor, rough_plastic
 
 Sides = tuple[Material | None, Material | None]
 
@@ -63,5 +64,7 @@ BSDFS: dict[str, Callable[[Node, Context], Sides]] = {
     "dielectric": _dielectric,
     "diffuse": _diffuse,
     "phong": _phong,
+    "roughconductor": rough_conductor,
+    "roughplastic": rough_plastic,
     "twosided": _twosided,
 }
