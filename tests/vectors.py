@@ -1,0 +1,75 @@
+"""raylab's compiled maps as functions of arrays, for `raylab.stats`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from raylab.jit import njit
+from raylab.vec3 import Vec3
+
+
+def directions(sample, *given):
+    """`sample(*given, u) -> w` as u (n, 2) -> (n, 3)."""
+
+    @njit
+    def fill(given, u, out):
+        for i in range(len(u)):
+            w = sample(*given, (u[i, 0], u[i, 1]))
+            out[i, 0], out[i, 1], out[i, 2] = w.x, w.y, w.z
+
+    return lambda u: _filled(fill, given, u, 3)
+
+
+def directions_and_pdf(sample, *given):
+    """`sample(*given, u) -> w, p` as u (n, 2) -> (n, 3), (n,)."""
+
+    @njit
+    def fill(given, u, out):
+        for i in range(len(u)):
+            w, p = sample(*given, (u[i, 0], u[i, 1]))
+            out[i, 0], out[i, 1], out[i, 2], out[i, 3] = w.x, w.y, w.z, p
+
+    def many(u):
+        out = _filled(fill, given, u, 4)
+        return out[:, :3], out[:, 3]
+
+    return many
+
+
+def pairs(sample, *given):
+    """`sample(*given, u) -> x, y` as u (n, 2) -> (n, 2)."""
+
+    @njit
+    def fill(given, u, out):
+        for i in range(len(u)):
+            out[i, 0], out[i, 1] = sample(*given, (u[i, 0], u[i, 1]))
+
+    return lambda u: _filled(fill, given, u, 2)
+
+
+def density(pdf, *given):
+    """`pdf(*given, w) -> p` as (n, 3) -> (n,)."""
+
+    @njit
+    def fill(given, w, out):
+        for i in range(len(w)):
+            out[i, 0] = pdf(*given, Vec3(w[i, 0], w[i, 1], w[i, 2]))
+
+    return lambda w: _filled(fill, given, w, 1)[:, 0]
+
+
+def density_2d(pdf, *given):
+    """`pdf(*given, x, y) -> p` as (n, 2) -> (n,)."""
+
+    @njit
+    def fill(given, x, out):
+        for i in range(len(x)):
+            out[i, 0] = pdf(*given, x[i, 0], x[i, 1])
+
+    return lambda x: _filled(fill, given, x, 1)[:, 0]
+
+
+def _filled(fill, given, values, columns):
+    out = np.zeros((len(values), columns))
+    fill(given, np.ascontiguousarray(values, np.float64), out)
+    return out
