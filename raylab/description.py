@@ -40,6 +40,18 @@ Colour = Array | Bitmap
 
 
 @dataclass(frozen=True, eq=False)
+class Animation:
+    """Where something stands over time: matrices (k, 4, 4) at increasing `times` (k,), k >= 2.
+
+    Between two of them translation and stretch change evenly, and so does the angle of the rotation, the shorter way
+    round; before the first and after the last it stands still.
+    """
+
+    times: Array
+    matrices: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Diffuse:
     """Lambertian reflection: f_r = reflectance / pi, 1/sr."""
 
@@ -125,6 +137,7 @@ class Shape:
     back: Material | None = None
     radiance: Array | None = None  # W/(m^2 sr), emitted on the side the normal points to
     to_world: Array = field(default_factory=_identity)
+    motion: Animation | None = None  # takes the place of to_world
     flip_normals: bool = False
 
 
@@ -236,6 +249,9 @@ class Camera:
     """
 
     to_world: Array = field(default_factory=_identity)
+    motion: Animation | None = None  # takes the place of to_world
+    shutter_open: float = 0.0
+    shutter_close: float = 0.0
     fov: float = 45.0  # degrees, along `fov_axis`
     fov_axis: Literal["x", "y", "diagonal", "smaller", "larger"] = "x"
     near_clip: float = 1e-2
