@@ -14,6 +14,7 @@ import numpy as np
 from raylab.description import Filter
 from raylab.embree import TNEAR
 from raylab.jit import njit
+from raylab.pose import pose_at
 from raylab.record import record
 from raylab.sampling import sample_concentric_disk, sample_triangle
 from raylab.surface import round32
@@ -105,6 +106,19 @@ class Pinhole(NamedTuple):
             start = max(start, self.skip / length(d))
         return round32(self.origin + d * start), round32(d), max(TNEAR, self.far - start)
 
+    def at(self, pose):
+        """The camera at the local origin, moved to a pose."""
+        return Pinhole(
+            pose.p, turned(pose, self.corner), turned(pose, self.across), turned(pose, self.down),
+            self.near, self.far, max(0.0, length(pose.p) - 2.0), self.filter,
+        )  # fmt: skip
+
+
+@njit
+def turned(pose, v):
+    """A vector of the camera's own coordinates in the world."""
+    return pose.x * v.x + pose.y * v.y + pose.z * v.z
+
 
 # --- apertures ---
 
@@ -174,3 +188,23 @@ class ThinLens(NamedTuple):
         if dot(o, o) > 4.0:  # nothing can be hit before, see Pinhole.skip
             start = max(start, (length(o) - 2.0) / length(d))
         return round32(o + d * start), round32(d), max(TNEAR, self.far - start)
+
+    def at(self, pose):
+        """The camera at the local origin, moved to a pose."""
+        return ThinLens(
+            pose.p, turned(pose, self.corner), turned(pose, self.across), turned(pose, self.down), self.near, self.far,
+            turned(pose, self.left), turned(pose, self.up), self.aperture, self.power, self.filter,
+        )  # fmt: skip
+
+
+@record
+class MovingCamera(NamedTuple):
+    """A camera that moves while the shutter is open: each eye ray is that of the camera where it stands at its time."""
+
+    still: Any  # Pinhole or ThinLens at the origin, looking along +z
+    pieces: View  # rows of `raylab.pose`
+    clock: View
+
+    def ray(self, column, row, rng):
+        pose = pose_at(self.pieces, 0, len(self.pieces), self.clock[0])
+        return self.still.at(pose).ray(column, row, rng)

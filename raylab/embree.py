@@ -49,6 +49,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
         [_POINTER, ctypes.c_int, _UINT, ctypes.c_int, _POINTER, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_size_t],
     ),
     "rtcSetGeometryUserPrimitiveCount": (None, [_POINTER, _UINT]),
+    "rtcSetGeometryTimeStepCount": (None, [_POINTER, _UINT]),
     "rtcSetGeometryUserData": (None, [_POINTER, _POINTER]),
     "rtcSetGeometryBoundsFunction": (None, [_POINTER, _POINTER, _POINTER]),
     "rtcSetGeometryIntersectFunction": (None, [_POINTER, _POINTER]),
@@ -92,28 +93,41 @@ class EmbreeScene:
     def handle(self) -> int:
         return int(self._scene)
 
-    def add_mesh(self, vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.uint32]) -> None:
-        """Share `vertices` (n, 3), followed in memory by at least four more bytes, and `faces` (m, 3)."""
+    def add_mesh(self, vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.uint32], segments: int = 0) -> None:
+        """Share `vertices` (n, 3), followed in memory by at least four more bytes, and `faces` (m, 3).
+
+        A mesh that moves in `segments` straight parts of equal duration has n / (segments + 1) vertices at each end.
+        """
         geometry = self._rtc.rtcNewGeometry(self._device, _TRIANGLES)
-        for slot, layout, buffer in ((_VERTEX, _FLOAT3, vertices), (_INDEX, _UINT3, faces)):
-            self._rtc.rtcSetSharedGeometryBuffer(geometry, slot, 0, layout, buffer.ctypes.data, 0, 12, len(buffer))
+        count = len(vertices) // (segments + 1)
+        if segments:
+            self._rtc.rtcSetGeometryTimeStepCount(geometry, segments + 1)
+        buffers = [(_VERTEX, k, _FLOAT3, vertices[k * count :], count) for k in range(segments + 1)]
+        for kind, slot, layout, buffer, size in [*buffers, (_INDEX, 0, _UINT3, faces, len(faces))]:
+            self._rtc.rtcSetSharedGeometryBuffer(geometry, kind, slot, layout, buffer.ctypes.data, 0, 12, size)
         self._keep += [vertices, faces]
         self._attach(geometry)
 
     def add_quadrics(self, rows: npt.NDArray[np.float64], bounds: npt.NDArray[np.float64]) -> None:
-        """Add `Quadric` rows with their boxes `bounds` (n, 6): lower then upper corner."""
-        outer = np.concatenate([bounds[:, :3] - 2.0**-18, bounds[:, 3:] + 2.0**-18], axis=1).astype(np.float32)
+        """Add `Quadric` rows with their boxes `bounds` (steps, n, 6): lower then upper corner, at each time step.
+
+        With more than one step the rows are those of `MovingQuadric`.
+        """
+        steps, count = bounds.shape[:2]
+        outer = np.concatenate([bounds[..., :3] - 2.0**-18, bounds[..., 3:] + 2.0**-18], axis=-1).astype(np.float32)
 
         def give_bounds(arguments: int) -> None:
-            primitive = _UINT.from_address(arguments + 8).value
+            primitive, step = _UINT.from_address(arguments + 8).value, _UINT.from_address(arguments + 12).value
             target = _POINTER.from_address(arguments + 16).value or 0
-            ctypes.memmove(target, outer[primitive, :3].ctypes.data, 12)
-            ctypes.memmove(target + 16, outer[primitive, 3:].ctypes.data, 12)
+            ctypes.memmove(target, outer[step, primitive, :3].ctypes.data, 12)
+            ctypes.memmove(target + 16, outer[step, primitive, 3:].ctypes.data, 12)
 
         callback = ctypes.CFUNCTYPE(None, _POINTER)(give_bounds)
-        intersect, occluded, owner = quadric_callbacks()
+        intersect, occluded, owner = quadric_callbacks(steps > 1)
         geometry = self._rtc.rtcNewGeometry(self._device, _USER)
-        self._rtc.rtcSetGeometryUserPrimitiveCount(geometry, len(rows))
+        self._rtc.rtcSetGeometryUserPrimitiveCount(geometry, count)
+        if steps > 1:
+            self._rtc.rtcSetGeometryTimeStepCount(geometry, steps)
         self._rtc.rtcSetGeometryUserData(geometry, rows.ctypes.data)
         self._rtc.rtcSetGeometryBoundsFunction(geometry, ctypes.cast(callback, _POINTER), None)
         self._rtc.rtcSetGeometryIntersectFunction(geometry, intersect)
@@ -144,14 +158,12 @@ class EmbreeScene:
 _F32, _I32, _I64, _I8P = ir.FloatType(), ir.IntType(32), ir.IntType(64), ir.IntType(8).as_pointer()
 
 
-def _new_ray(builder, words, o, d, tnear, tfar):
+def _new_ray(builder, words, o, d, tnear, tfar, time):
     with builder.goto_entry_block():
         ray = builder.alloca(ir.ArrayType(_F32, words))
         ray.align = 16
-    time = ir.Constant(_F32, 0.0)
-    floats = [builder.fptrunc(v, _F32) for v in (*o, tnear, *d)]
-    for k, v in enumerate([*floats, time, builder.fptrunc(tfar, _F32)]):
-        builder.store(v, _word(builder, ray, k))
+    for k, v in enumerate((*o, tnear, *d, time, tfar)):
+        builder.store(builder.fptrunc(v, _F32), _word(builder, ray, k))
     for k, v in ((9, -1), (10, 0), (11, 0)):  # mask, id, flags
         builder.store(ir.Constant(_I32, v), _word(builder, ray, k, _I32))
     return ray
@@ -174,63 +186,63 @@ def _components(context, builder, value):
 
 
 @intrinsic
-def _trace(typing_context, handle, o, d, tnear, tfar):
+def _trace(typing_context, handle, o, d, tnear, tfar, time):
     result = types.UniTuple(types.int64, 2)
 
     def codegen(context, builder, signature, arguments):
-        handle, o, d, tnear, tfar = arguments
-        ray = _new_ray(builder, 24, _components(context, builder, o), _components(context, builder, d), tnear, tfar)
+        handle, o, d, *interval = arguments
+        ray = _new_ray(builder, 24, _components(context, builder, o), _components(context, builder, d), *interval)
         for k in (17, 18, 19, 20):  # primID, geomID, instID, instPrimID: none
             builder.store(ir.Constant(_I32, -1), _word(builder, ray, k, _I32))
         _call(builder, "rtcIntersect1", builder.inttoptr(handle, _I8P), ray, ir.Constant(_I8P, None))
         ids = [builder.sext(builder.load(_word(builder, ray, k, _I32)), _I64) for k in (18, 17)]
         return context.make_tuple(builder, result, ids)
 
-    return result(types.uint64, o, d, types.float64, types.float64), codegen
+    return result(types.uint64, o, d, types.float64, types.float64, types.float64), codegen
 
 
 @intrinsic
-def _blocked(typing_context, handle, o, d, tfar):
+def _blocked(typing_context, handle, o, d, tfar, time):
     def codegen(context, builder, signature, arguments):
-        handle, o, d, tfar = arguments
-        tnear = ir.Constant(ir.DoubleType(), TNEAR)
-        ray = _new_ray(builder, 12, _components(context, builder, o), _components(context, builder, d), tnear, tfar)
+        handle, o, d, tfar, time = arguments
+        interval = (ir.Constant(ir.DoubleType(), TNEAR), tfar, time)
+        ray = _new_ray(builder, 12, _components(context, builder, o), _components(context, builder, d), *interval)
         _call(builder, "rtcOccluded1", builder.inttoptr(handle, _I8P), ray, ir.Constant(_I8P, None))
         return builder.fcmp_ordered("<", builder.load(_word(builder, ray, 8)), ir.Constant(_F32, 0.0))
 
-    return types.boolean(types.uint64, o, d, types.float64), codegen
+    return types.boolean(types.uint64, o, d, types.float64, types.float64), codegen
 
 
-def trace(handle, o, d, tnear, tfar):
+def trace(handle, o, d, tnear, tfar, time=0.0):
     """(geometry, primitive) of the first thing that o + t d meets for t in [tnear, tfar]; -1 for nothing."""
-    words = _python_ray(o, d, tnear, tfar)
+    words = _python_ray(o, d, tnear, tfar, time)
     words[17:21].view(np.int32)[:] = -1
     library().rtcIntersect1(int(handle), words.ctypes.data, None)
     return int(words.view(np.int32)[18]), int(words.view(np.int32)[17])
 
 
-def blocked(handle, o, d, tfar):
+def blocked(handle, o, d, tfar, time=0.0):
     """Whether anything lies on o + t d for t in (0, tfar)."""
-    words = _python_ray(o, d, TNEAR, tfar)
+    words = _python_ray(o, d, TNEAR, tfar, time)
     library().rtcOccluded1(int(handle), words.ctypes.data, None)
     return bool(words[8] < 0.0)
 
 
 @overload(trace, jit_options=OPTIONS)
-def _overload_trace(handle, o, d, tnear, tfar):
-    return lambda handle, o, d, tnear, tfar: _trace(handle, o, d, tnear, tfar)
+def _overload_trace(handle, o, d, tnear, tfar, time=0.0):
+    return lambda handle, o, d, tnear, tfar, time=0.0: _trace(handle, o, d, tnear, tfar, time)
 
 
 @overload(blocked, jit_options=OPTIONS)
-def _overload_blocked(handle, o, d, tfar):
-    return lambda handle, o, d, tfar: _blocked(handle, o, d, tfar)
+def _overload_blocked(handle, o, d, tfar, time=0.0):
+    return lambda handle, o, d, tfar, time=0.0: _blocked(handle, o, d, tfar, time)
 
 
-def _python_ray(o: Vec3, d: Vec3, tnear: float, tfar: float) -> npt.NDArray[np.float32]:
+def _python_ray(o: Vec3, d: Vec3, tnear: float, tfar: float, time: float = 0.0) -> npt.NDArray[np.float32]:
     memory = np.zeros(32, np.float32)
     start = (-memory.ctypes.data % 16) // 4
     words = memory[start : start + 24]
-    words[:9] = [*o, tnear, *d, 0.0, tfar]
+    words[:9] = [*o, tnear, *d, time, tfar]
     words[9:10].view(np.int32)[0] = -1
     return words
 
@@ -250,12 +262,12 @@ class Packet(NamedTuple):
     ids: View  # the same memory as int32
     valid: View  # (LANES,) int32: -1 for a lane in use, 0 for one that is not
 
-    def put(self, lane, o, d, tfar):
-        """Set a lane to the ray o + t d, 0 <= t <= tfar."""
+    def put(self, lane, o, d, tfar, time):
+        """Set a lane to the ray o + t d, 0 <= t <= tfar, at a time in [0, 1]."""
         self.words[0, lane], self.words[1, lane], self.words[2, lane] = o.x, o.y, o.z
         self.words[3, lane] = 0.0
         self.words[4, lane], self.words[5, lane], self.words[6, lane] = d.x, d.y, d.z
-        self.words[7, lane], self.words[8, lane] = 0.0, tfar
+        self.words[7, lane], self.words[8, lane] = time, tfar
         self.ids[9, lane], self.ids[10, lane], self.ids[11, lane] = -1, 0, 0
         self.ids[18, lane] = -1
         self.valid[lane] = -1
@@ -270,6 +282,9 @@ class Packet(NamedTuple):
 
     def d(self, lane):
         return Vec3(self.words[4, lane], self.words[5, lane], self.words[6, lane])
+
+    def time(self, lane):
+        return np.float64(self.words[7, lane])
 
     def hit(self, lane):
         """(geometry, primitive) that the lane's ray met first; geometry -1 for nothing."""

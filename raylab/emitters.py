@@ -52,7 +52,7 @@ class AreaLights:
         """A mesh light over normalised float32 vertices; returns its number."""
         corners = vertices[faces].astype(np.float64)
         if kind == "rectangle" and len(faces) == 2:
-            v0, v1, v3 = vertices[[0, 1, 3]] if not _reversed(faces) else vertices[[0, 3, 1]]
+            v0, v1, v3 = vertices[[0, 1, 3]] if not is_reversed(faces) else vertices[[0, 3, 1]]
             return self._add_flat(shape, lights.RECTANGLE, np.array([v0, v1, v3], np.float64), 1.0)
         if len(faces) == 1:
             return self._add_flat(shape, lights.TRIANGLE, corners[0], 0.5)
@@ -131,7 +131,7 @@ class AreaLights:
         return Table(lights.AreaLight, rows, lights.Shapes(**present))
 
 
-def _reversed(faces: npt.NDArray[np.uint32]) -> bool:
+def is_reversed(faces: npt.NDArray[np.uint32]) -> bool:
     return bool(faces[0, 0] != 0)
 
 

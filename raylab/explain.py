@@ -55,12 +55,21 @@ def explain(scene: Scene, shade: str, sampler: str) -> str:
         f"The kernel is compiled for shade {shade!r}, sampler {sampler!r} and what the scene has"
         + (":" if there else ", which is none of the optional parts."),
         *(f"  + {name}: it {PARTS[name].there}." for name in there),
+        *_motion(scene),
         "Left out, with no test, no memory and no random number spent on it:",
         *(f"  - {name}: {PARTS[name].absent}." for name in FEATURES if name not in scene.features),
         "Modules not imported:",
         *(f"  - {name}, for {MODULES[name]}." for name in left_out(scene)["modules"]),
     ]
     return "\n".join(lines)
+
+
+def _motion(scene: Scene) -> list[str]:
+    if "motion" not in scene.features:
+        return []
+    return [
+        f"    Moving meshes stand within {scene.motion_error:.2g} scene units of their path, all else exactly on it."
+    ]
 
 
 def measured(scene: Scene, image: Any, shade: str, load_seconds: float) -> dict[str, Any]:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from raylab import description as d
-from raylab import quadrics
+from raylab import keyframes, quadrics
 from raylab.errors import SceneError
+from raylab.keyframes import Shutter
 from raylab.triangles import degenerate_faces
 
 Array = npt.NDArray[np.float64]
+
+QUADRIC_SEGMENTS = 8  # parts of the shutter interval for which Embree holds boxes of what is not a mesh
 
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
 _SQUARE_UV = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
@@ -32,6 +35,8 @@ class MeshArrays:
     normals: Array | None
     uv: Array | None
     kind: str = "mesh"
+    segments: int = 0  # straight parts of its motion; vertices and normals stand one after the other at each end
+    error: float = 0.0  # how far its vertices may stand off their true path
 
 
 @dataclass
@@ -41,6 +46,7 @@ class QuadricArrays:
     shape: d.Shape
     kind: int
     to_world: Array
+    local: Array  # the part of to_world below the shape's own
 
 
 @dataclass(frozen=True)
@@ -67,7 +73,9 @@ class Placement:
         return cls(centre, 2.0**-exponent)
 
 
-def gather(shapes: Sequence[d.Shape]) -> tuple[list[MeshArrays], list[QuadricArrays], list[str]]:
+def gather(
+    shapes: Sequence[d.Shape], shutter: Shutter = (0.0, 0.0)
+) -> tuple[list[MeshArrays], list[QuadricArrays], list[str]]:
     """World-space meshes and quadrics of all shapes, and warnings about what had to be left out."""
     meshes: list[MeshArrays] = []
     quads: list[QuadricArrays] = []
@@ -77,7 +85,9 @@ def gather(shapes: Sequence[d.Shape]) -> tuple[list[MeshArrays], list[QuadricArr
         if isinstance(shape, d.Sphere | d.Disk | d.Cylinder):
             quads.append(quadric(shape))
         else:
-            meshes.append(world_mesh(shape, warnings))
+            meshes.append(
+                world_mesh(shape, warnings) if shape.motion is None else moving_mesh(shape, shutter, warnings)
+            )
     return meshes, quads, warnings
 
 
@@ -93,14 +103,14 @@ def check_matrix(shape: d.Shape) -> None:
 def quadric(shape: d.Sphere | d.Disk | d.Cylinder) -> QuadricArrays:
     """The affine map from the unit quadric to the shape."""
     if isinstance(shape, d.Disk):
-        return QuadricArrays(shape, quadrics.DISK, shape.to_world)
+        return QuadricArrays(shape, quadrics.DISK, shape.to_world, np.eye(4))
     if not (shape.radius > 0.0 and math.isfinite(shape.radius)):
         raise SceneError(f"shape {shape.name!r}: radius must be positive and finite, got {shape.radius}")
     local = np.eye(4)
     if isinstance(shape, d.Sphere):
         local[:3, :3] *= shape.radius
         local[:3, 3] = shape.center
-        return QuadricArrays(shape, quadrics.SPHERE, shape.to_world @ local)
+        return QuadricArrays(shape, quadrics.SPHERE, shape.to_world @ local, local)
     axis = np.asarray(shape.p1, float) - shape.p0
     height = np.linalg.norm(axis)
     if not (height > 0.0 and np.isfinite(height)):
@@ -113,7 +123,7 @@ def quadric(shape: d.Sphere | d.Disk | d.Cylinder) -> QuadricArrays:
         across = across[::-1]
     local[:3, :3] = np.stack([across[0], across[1], axis], axis=1)
     local[:3, 3] = shape.p0
-    return QuadricArrays(shape, quadrics.CYLINDER, shape.to_world @ local)
+    return QuadricArrays(shape, quadrics.CYLINDER, shape.to_world @ local, local)
 
 
 def quadric_box(q: QuadricArrays) -> tuple[Array, Array]:
@@ -124,6 +134,18 @@ def quadric_box(q: QuadricArrays) -> tuple[Array, Array]:
         return centre - reach, centre + reach
     reach, top = np.linalg.norm(m[:, :2], axis=1), centre + (m[:, 2] if q.kind == quadrics.CYLINDER else 0.0)
     return np.minimum(centre, top) - reach, np.maximum(centre, top) + reach
+
+
+def moving_boxes(q: QuadricArrays, shutter: Shutter) -> Array:
+    """(QUADRIC_SEGMENTS + 1, 2, 3): boxes at time steps that, interpolated, contain the quadric at each time."""
+    motion = q.shape.motion
+    if motion is None:
+        return np.array([quadric_box(q)] * (QUADRIC_SEGMENTS + 1))
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) @ q.local[:3, :3].T
+    error = keyframes.chord_error(motion, shutter, corners + q.local[:3, 3], QUADRIC_SEGMENTS)
+    poses = keyframes.samples(motion, shutter, QUADRIC_SEGMENTS)
+    boxes = np.array([quadric_box(replace(q, to_world=m @ q.local)) for m in poses])
+    return boxes + np.array([-error, error])[:, None]
 
 
 def quadric_row(q: QuadricArrays, placement: Placement) -> Array:
@@ -156,6 +178,21 @@ def world_mesh(shape: d.Shape, warnings: list[str]) -> MeshArrays:
         warnings.append(f"shape {shape.name!r}: {int(thin.sum())} degenerate triangles of {len(faces)} left out")
         faces = faces[~thin]
     return MeshArrays(shape, world, np.ascontiguousarray(faces, np.uint32), normals, uv, kind)
+
+
+def moving_mesh(shape: d.Shape, shutter: Shutter, warnings: list[str]) -> MeshArrays:
+    """A mesh at as many time steps as its path needs, one after the other."""
+    assert shape.motion is not None
+    mesh, points = world_mesh(shape, warnings), local_mesh(shape)[0]
+    segments, error = keyframes.segments_needed(shape.motion, shutter, points)
+    steps = [
+        world_mesh(replace(shape, to_world=m, motion=None), [])
+        for m in keyframes.samples(shape.motion, shutter, segments)
+    ]
+    normals = None if mesh.normals is None else np.concatenate([s.normals for s in steps if s.normals is not None])
+    uv = None if mesh.uv is None else np.tile(mesh.uv, (segments + 1, 1))
+    vertices = np.concatenate([s.vertices for s in steps])
+    return replace(mesh, vertices=vertices, normals=normals, uv=uv, segments=segments, error=error)
 
 
 def local_mesh(shape: d.Shape) -> tuple[Array, npt.NDArray[Any], Array | None, Array | None, str]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -178,7 +179,7 @@ def chord_error(motion: d.Animation, shutter: Shutter, points: Array, segments: 
     """
     parts, step = pieces(motion, shutter), (shutter[1] - shutter[0]) / segments
     bends = [(b.start, float(np.linalg.norm(b.velocity(points, b.start) - a.velocity(points, a.end), axis=1).max()))
-             for a, b in zip(parts[:-1], parts[1:], strict=True)]  # fmt: skip
+             for a, b in pairwise(parts)]  # fmt: skip
     worst = 0.0
     for k in range(segments):
         low, high = shutter[0] + k * step, shutter[0] + (k + 1) * step

@@ -66,8 +66,10 @@ def send(scene, camera, sampler, packet, column, row, pixel, streams, first, las
     lane = 0
     for stream in range(streams):
         for sample in range(first, last):
-            o, d, tfar = camera.ray(column, row, sampler.stream(pixel, stream, sample))
-            packet.put(lane, o, d, tfar)
+            rng = sampler.stream(pixel, stream, sample)
+            time = scene.motion.draw(rng)
+            o, d, tfar = camera.ray(column, row, rng)
+            packet.put(lane, o, d, tfar, time)
             if not is_valid_ray(o, d):
                 packet.switch_off(lane)
                 scene.tally[INVALID_RAYS] += 1
@@ -90,6 +92,7 @@ def receive(scene, strategy, sampler, packet, lane, drawn, pixels, place, pixel,
     for sample in range(first, last):
         rng = sampler.stream(pixel, stream, sample)
         sampler.counter.next[0] = drawn
+        scene.motion.set(packet.time(lane))
         value = _radiance(scene, strategy, packet.o(lane), packet.d(lane), packet.hit(lane), rng)
         if is_finite(value):
             count += 1.0

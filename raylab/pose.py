@@ -20,6 +20,7 @@ from raylab.vec3 import Vec3, cross, dot
 # Columns of a piece: u0, u1, angle; then vectors: T0, T', the rows of A, B and C, the columns of S0 and S', which are
 # the images of the three axes and of the origin.
 _T, _A, _B, _C, _S, _DS, PIECE_COLUMNS = 3, 9, 18, 27, 36, 48, 60
+LINEAR = [c for first in (_S, _DS) for c in range(first, first + 9)]  # columns of the images of axes
 
 
 @record

@@ -11,6 +11,7 @@ import math
 from typing import NamedTuple
 
 from raylab.jit import njit
+from raylab.pose import PIECE_COLUMNS, pose_at
 from raylab.record import record
 from raylab.vec3 import Vec3, dot, normalize
 
@@ -72,6 +73,31 @@ def quadric_at(rows, i):
     p, a = Vec3(rows[i, 1], rows[i, 2], rows[i, 3]), Vec3(rows[i, 4], rows[i, 5], rows[i, 6])
     b, c = Vec3(rows[i, 7], rows[i, 8], rows[i, 9]), Vec3(rows[i, 10], rows[i, 11], rows[i, 12])
     return Quadric(int(rows[i, 0]), p, a, b, c, rows[i, 13])
+
+
+MOVING_COLUMNS = PIECE_COLUMNS  # of a row of a table in which something moves: first the columns of a Quadric
+FIRST_PIECE, PIECES, ALL_ROWS = 14, 15, 16  # then where its pieces stand in the table, how many, and the table's length
+
+
+@record
+class MovingQuadric(NamedTuple):
+    """A quadric where it stands at the time of the clock, `store`."""
+
+    @staticmethod
+    def of(rows, i, store):
+        return quadric_at_time(rows, i, store[0])
+
+
+@njit
+def quadric_at_time(rows, i, u):
+    """Row i of a table in which something moves, at time u; rows of pieces stand behind those of the quadrics."""
+    quadric = quadric_at(rows, i)
+    count = int(rows[i, PIECES])
+    if count == 0:
+        return quadric
+    pose = pose_at(rows, int(rows[i, FIRST_PIECE]), count, u)
+    a, b, c = pose.inverse_rows()
+    return Quadric(quadric.kind, pose.p, a, b, c, quadric.side)
 
 
 @njit

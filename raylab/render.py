@@ -21,6 +21,7 @@ from raylab.embree import LANES, new_packet
 from raylab.errors import UserError
 from raylab.image import Image, estimate, invalid
 from raylab.jit import entry_point
+from raylab.motion import own_copy
 from raylab.pixels import COUNT, cached_accumulate, fresh_accumulate, new_accumulator, view
 from raylab.scene import Scene
 from raylab.strategies import strategy
@@ -175,11 +176,11 @@ def _arguments(run: _Run, tally: Any, rows: tuple[int, int], samples: tuple[int,
     camera = run.scene.description.camera
     cells = run.plan.samples if run.plan.samples < MAX_SAMPLES else 16
     sampler = samplers.make(run.sampler, run.seed, cells)
-    data = run.scene.data._replace(tally=View(tally))
+    data, eye = own_copy(run.scene.data._replace(tally=View(tally)), run.scene.camera)
     pixels = view(run.accumulator)
     return (
         data,
-        run.scene.camera,
+        eye,
         run.strategy,
         sampler,
         new_packet(),

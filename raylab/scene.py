@@ -14,12 +14,14 @@ import numpy as np
 import numpy.typing as npt
 
 from raylab import description as d
-from raylab import quadrics
+from raylab import keyframes, quadrics
+from raylab.clockwork import moving_rows, set_in_motion
 from raylab.embree import EmbreeScene
 from raylab.emitters import AreaLights, colour, point_table, sun_table
 from raylab.errors import SceneError
-from raylab.geometry import MeshArrays, Placement, QuadricArrays, gather, quadric_box, quadric_row
+from raylab.geometry import MeshArrays, Placement, QuadricArrays, gather, moving_boxes, quadric_box, quadric_row
 from raylab.light_choice import make_choice
+from raylab.motion import Static
 from raylab.palette import Palette
 from raylab.point import plane_table
 from raylab.record import Table
@@ -51,15 +53,21 @@ class Scene:
 
     def __init__(self, description: d.SceneDescription) -> None:
         self.description = description
-        meshes, quads, left_out = gather(description.shapes)
+        still = keyframes.at_rest(description)
+        self.shutter = (still.camera.shutter_open, still.camera.shutter_close)
+        meshes, quads, left_out = gather(still.shapes, self.shutter)
         self.warnings = [*description.warnings, *left_out]
         boxes = [(m.vertices.min(axis=0), m.vertices.max(axis=0)) for m in meshes if len(m.faces)]
-        self.placement = Placement.around(boxes + [quadric_box(q) for q in quads])
+        for q in quads:
+            around = np.array([quadric_box(q)]) if q.shape.motion is None else moving_boxes(q, self.shutter)
+            boxes.append((around[:, 0].min(axis=0), around[:, 1].max(axis=0)))
+        self.placement = Placement.around(boxes)
+        self.motion_error = max((m.error for m in meshes), default=0.0)
         self.triangles = sum(len(m.faces) for m in meshes)
-        builder = _Builder(self.placement, meshes, quads)
+        builder = _Builder(self.placement, meshes, quads, self.shutter)
         self.embree = builder.embree
-        self.data = builder.data(description)
-        self.camera = make_camera(description.camera, self.placement)
+        self.data = builder.data(still)
+        self.camera: Any = make_camera(still.camera, self.placement, self.data.motion)
         self.features = features(self, builder)
 
     def __repr__(self) -> str:
@@ -69,13 +77,18 @@ class Scene:
 class _Builder:
     """Fills the arrays of a SceneData and the Embree scene."""
 
-    def __init__(self, placement: Placement, meshes: list[MeshArrays], quads: list[QuadricArrays]) -> None:
-        self.placement, self.meshes, self.quads = placement, meshes, quads
+    def __init__(
+        self, placement: Placement, meshes: list[MeshArrays], quads: list[QuadricArrays], shutter: keyframes.Shutter
+    ) -> None:
+        self.placement, self.meshes, self.quads, self.shutter = placement, meshes, quads, shutter
+        self.clock = View(np.zeros(1))
         self.palette, self.area_lights, self.embree = Palette(), AreaLights(), EmbreeScene()
         self.vertices = self._vertices()
         self.faces = np.concatenate([m.faces for m in meshes]) if meshes else np.zeros((1, 3), np.uint32)
         self.rows = np.stack([quadric_row(q, placement) for q in quads]) if quads else np.zeros((0, 14))
         self.shapes = self._shapes()
+        if self._quads_move():
+            self.rows = moving_rows(quads, self.rows, shutter, placement)
         self._build_embree()
 
     def _vertices(self) -> npt.NDArray[np.float32]:
@@ -118,21 +131,40 @@ class _Builder:
         first_face, first_vertex = 0, 0
         for m in self.meshes:
             own = self.vertices[first_vertex : first_vertex + len(m.vertices)]
-            self.embree.add_mesh(own, self.faces[first_face : first_face + len(m.faces)])
+            self.embree.add_mesh(own, self.faces[first_face : first_face + len(m.faces)], m.segments)
             first_face, first_vertex = first_face + len(m.faces), first_vertex + len(m.vertices)
         if self.quads:
-            boxes = np.array([np.concatenate(quadric_box(q)).reshape(2, 3) for q in self.quads])
-            self.embree.add_quadrics(self.rows, self.placement.points(boxes).reshape(-1, 6))
+            boxes = np.array([[quadric_box(q)] for q in self.quads])
+            if self._quads_move():
+                boxes = np.array([moving_boxes(q, self.shutter) for q in self.quads])
+            corners = self.placement.points(boxes).swapaxes(0, 1)  # (steps, n, 2, 3)
+            self.embree.add_quadrics(self.rows, corners.reshape(*corners.shape[:2], 6))
         self.embree.commit()
 
+    def _quads_move(self) -> bool:
+        return any(q.shape.motion is not None for q in self.quads)
+
     def data(self, description: d.SceneDescription) -> SceneData:
+        """What kernels read; with a clock, if anything moves while the shutter is open."""
+        data = self._still_data(description)
+        moving = any(m.segments for m in self.meshes) or self._quads_move() or description.camera.motion is not None
+        return data._replace(motion=set_in_motion(data, self.meshes, self.quads, self.clock)) if moving else data
+
+    def _quadrics(self) -> Any:
+        if not self.quads:
+            return NoQuadrics()
+        if self._quads_move():
+            return Quadrics(Table(quadrics.MovingQuadric, self.rows, self.clock), len(self.meshes))
+        return Quadrics(Table(quadrics.Quadric, self.rows), len(self.meshes))
+
+    def _still_data(self, description: d.SceneDescription) -> SceneData:
         return SceneData(
             embree=np.uint64(self.embree.handle),
             shapes=View(self.shapes if len(self.shapes) else np.zeros((1, SHAPE_COLUMNS), np.int64)),
             vertices=View(self.vertices),
             faces=View(self.faces),
             planes=View(self._planes()),
-            quadrics=Quadrics(Table(quadrics.Quadric, self.rows), len(self.meshes)) if self.quads else NoQuadrics(),
+            quadrics=self._quadrics(),
             normals=self._normals(),
             coordinates=self._coordinates(),
             materials=self.palette.materials(),
@@ -143,6 +175,7 @@ class _Builder:
             environment=make_environment(description.environment),
             max_depth=depth(description.max_depth),
             choice=make_choice(self.area_lights.power()),
+            motion=Static(),
             tally=View(np.zeros(TALLIES, np.int64)),
         )
 
@@ -193,5 +226,6 @@ def features(scene: Scene, builder: _Builder) -> frozenset[str]:
         "smooth normals": data.normals.present(),
         "spheres, disks and cylinders": bool(builder.quads),
         "lens": has_lens(scene.description.camera),
+        "motion": not isinstance(data.motion, Static),
     }
     return frozenset(name for name, there in present.items() if there)

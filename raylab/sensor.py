@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from raylab import description as d
-from raylab.camera import Pinhole, ThinLens, make_aperture, make_filter
+from raylab import keyframes
+from raylab.camera import MovingCamera, Pinhole, ThinLens, make_aperture, make_filter
 from raylab.errors import SceneError
 from raylab.geometry import Placement
+from raylab.motion import Moving
+from raylab.pose import LINEAR
 from raylab.vec3 import Vec3
+from raylab.view import View
 
 Array = npt.NDArray[np.float64]
 
@@ -21,9 +27,11 @@ def has_lens(camera: d.Camera) -> bool:
     return camera.aperture_radius > 0.0
 
 
-def make_camera(camera: d.Camera, placement: Placement) -> Pinhole | ThinLens:
+def make_camera(camera: d.Camera, placement: Placement, motion: Any = None) -> Pinhole | ThinLens | MovingCamera:
     """The camera record in normalised coordinates; SceneError for a camera that sees nothing."""
     check_camera(camera)
+    if camera.motion is not None and isinstance(motion, Moving):
+        return make_moving_camera(camera, placement, motion.clock)
     eye = pinhole(camera, placement)
     if not has_lens(camera):
         return eye
@@ -43,6 +51,18 @@ def make_camera(camera: d.Camera, placement: Placement) -> Pinhole | ThinLens:
         power=1.0 / (camera.focus_distance * placement.scale),
         filter=eye.filter,
     )
+
+
+def make_moving_camera(camera: d.Camera, placement: Placement, clock: View) -> MovingCamera:
+    """The record of a camera that moves while the shutter is open."""
+    assert camera.motion is not None
+    matrices = np.array(camera.motion.matrices, np.float64)
+    matrices[:, :3, :3] /= np.linalg.norm(matrices[:, :3, :3], axis=1, keepdims=True)
+    still = make_camera(replace(camera, to_world=np.eye(4), motion=None), Placement(np.zeros(3), placement.scale))
+    motion, shutter = replace(camera.motion, matrices=matrices), (camera.shutter_open, camera.shutter_close)
+    rows = keyframes.table(motion, shutter, np.eye(4), placement.centre, placement.scale)
+    rows[:, LINEAR] /= placement.scale  # directions keep their length
+    return MovingCamera(still, View(rows), clock)
 
 
 def axes(camera: d.Camera) -> Array:

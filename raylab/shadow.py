@@ -40,4 +40,4 @@ def is_blocked(scene, o, d, tfar):
         scene.tally[INVALID_RAYS] += 1
         return True
     scene.tally[SHADOW_RAYS] += 1
-    return blocked(scene.embree, o, d, tfar)
+    return blocked(scene.embree, o, d, tfar, scene.motion.time())

@@ -72,8 +72,12 @@ TABLE = (
         ("raylab.camera.ThinLens", "raylab.camera.DiskAperture"),
         test="test_depth_of_field.py::test_a_picture_out_of_focus_is_the_closed_form_in_each_pixel",
     ),
-    Slide("Motion blur", (), NOT_YET),
-    Slide("Cause of motion blur", (), NOT_YET),
+    Slide("Motion blur", (), "picture"),
+    Slide(
+        "Cause of motion blur",
+        ("raylab.motion.Moving", "raylab.keyframes.matrix_at"),
+        test="test_motion_blur.py::test_a_moving_edge_covers_a_pixel_as_the_formula_says",
+    ),
     Slide("Creating soft shadows", ("raylab.lights.RectangleShape", "raylab.samplers.make"), "uniform in square"),
     Slide(
         "Illumination as integration (Lambertian, over the light)",
@@ -202,7 +206,12 @@ TABLE = (
         ("raylab.camera.ThinLens", "raylab.camera.PolygonAperture"),
         test="test_depth_of_field.py::test_depth_of_field_blurs_an_edge_as_the_formula_says",
     ),
-    Slide("Motion blur (time)", (), NOT_YET),
+    Slide(
+        "Motion blur (time)",
+        ("raylab.motion.Moving", "raylab.pose.pose_at", "raylab.camera.MovingCamera"),
+        "the clock of `scene.motion` is time; strobing: a shutter that opens and closes at once",
+        test="test_motion_blur.py::test_moving_lights_of_every_kind_light_as_they_stand",
+    ),
     Slide("The Blue Umbrella", (), "picture"),
     Slide(
         "After the last slide (by light or by BRDF?)",

@@ -9,6 +9,7 @@ import numpy as np
 
 from raylab.embree import trace
 from raylab.jit import njit
+from raylab.motion import moving_frame
 from raylab.point import Point, curved_point, facet_point, free_point
 from raylab.record import record
 from raylab.vec3 import Vec3, black, cross, dot, length, vec3_at
@@ -40,6 +41,7 @@ class SceneData(NamedTuple):
     environment: Any
     max_depth: int  # rays in a row, for `raylab.basic`
     choice: Any  # FewLights or ManyLights: which of the area lights to sample
+    motion: Any  # Static or Moving
     tally: View  # (TALLIES,) int64
 
 
@@ -79,7 +81,7 @@ def intersect(scene, o, d, tnear, tfar):
     if not is_valid_ray(o, d):
         scene.tally[INVALID_RAYS] += 1
         return no_hit()
-    geometry, primitive = trace(scene.embree, o, d, tnear, tfar)
+    geometry, primitive = trace(scene.embree, o, d, tnear, tfar, scene.motion.time())
     return no_hit() if geometry < 0 else hit_of(scene, geometry, primitive, o, d, tnear)
 
 
@@ -95,21 +97,41 @@ def hit_of(scene, geometry, primitive, o, d, tnear):
 def triangle_hit(scene, shape, primitive, o, d):
     """Plane intersection t = n . (v0 - o) / n . d in float64, and what the vertices carry there."""
     face = scene.shapes[shape, FIRST_FACE] + primitive
-    n = vec3_at(scene.planes, face)
-    slack, tilt = scene.planes[face, 4], Vec3(scene.planes[face, 5], scene.planes[face, 6], scene.planes[face, 7])
-    p = o + d * ((scene.planes[face, 3] - dot(n, o)) / dot(n, d))
+    n, offset, slack, tilt = facet(scene, shape, face)
+    p = o + d * ((offset - dot(n, o)) / dot(n, d))
     N, uv = n, (0.0, 0.0)
     if scene.normals.present() or scene.coordinates.present():
         first = scene.shapes[shape, FIRST_VERTEX]
         i0, i1, i2 = first + scene.faces[face, 0], first + scene.faces[face, 1], first + scene.faces[face, 2]
-        b = barycentrics(vec3_at(scene.vertices, i0), vec3_at(scene.vertices, i1), vec3_at(scene.vertices, i2), p)
+        v0, v1, v2 = corners(scene, shape, i0, i1, i2)
+        b = barycentrics(v0, v1, v2, p)
         if scene.shapes[shape, SMOOTH] != 0:
-            N = scene.normals.at(i0, i1, i2, b, n)
+            N = scene.normals.at(scene.motion, shape, i0, i1, i2, b, n)
         uv = scene.coordinates.at(i0, i1, i2, b, scene.shapes[shape, HAS_UV])
     front = dot(N, d) < 0.0
     N = N if front else -N
     n = n if dot(n, N) >= 0.0 else -n
     return Hit(True, facet_point(p, n, slack, tilt), N, front, shape, uv)
+
+
+@njit
+def facet(scene, shape, face):
+    """Unit normal n, n . v0, and the offset terms of a triangle: from the plane table, or made for its time."""
+    if scene.motion.moves(shape):
+        first = scene.shapes[shape, FIRST_VERTEX]
+        i0, i1, i2 = first + scene.faces[face, 0], first + scene.faces[face, 1], first + scene.faces[face, 2]
+        v0, v1, v2 = corners(scene, shape, i0, i1, i2)
+        n, slack, tilt = moving_frame(v0, v1, v2)
+        return n, dot(n, v0), slack, tilt
+    tilt = Vec3(scene.planes[face, 5], scene.planes[face, 6], scene.planes[face, 7])
+    return vec3_at(scene.planes, face), scene.planes[face, 3], scene.planes[face, 4], tilt
+
+
+@njit
+def corners(scene, shape, i0, i1, i2):
+    """Three vertices where they stand now."""
+    motion, vertices = scene.motion, scene.vertices
+    return motion.vertex(vertices, shape, i0), motion.vertex(vertices, shape, i1), motion.vertex(vertices, shape, i2)
 
 
 @njit
@@ -165,7 +187,7 @@ class FlatNormals(NamedTuple):
     def present(self):
         return False
 
-    def at(self, i0, i1, i2, b, n):
+    def at(self, motion, shape, i0, i1, i2, b, n):
         return n
 
 
@@ -178,8 +200,9 @@ class SmoothNormals(NamedTuple):
     def present(self):
         return True
 
-    def at(self, i0, i1, i2, b, n):
-        N = vec3_at(self.normals, i0) * b.x + vec3_at(self.normals, i1) * b.y + vec3_at(self.normals, i2) * b.z
+    def at(self, motion, shape, i0, i1, i2, b, n):
+        N = motion.vertex(self.normals, shape, i0) * b.x + motion.vertex(self.normals, shape, i1) * b.y
+        N += motion.vertex(self.normals, shape, i2) * b.z
         size = length(N)
         return N / size if size > 0.0 else n
 

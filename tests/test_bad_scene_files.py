@@ -42,6 +42,15 @@ def texture(inside: str) -> str:
     return f'<texture type="bitmap"><string name="filename" value="half.exr"/>\n{inside}</texture>'
 
 
+def key(time: float | str, operation: str = "") -> str:
+    return f'<transform time="{time}">{operation}</transform>'
+
+
+def animated(*keys: str, kind: str = 'shape type="rectangle"') -> str:
+    """The keyframes start in the line after that of the <animation>, one to a line."""
+    return f'<{kind}><animation name="to_world">\n' + "\n".join(keys) + f"</animation></{kind.split()[0]}>"
+
+
 def thin_lens(*floats: str) -> str:
     values = "\n".join(f'<{kind} name="{name}" value="{value}"/>' for kind, name, value in map(str.split, floats))
     return f'<sensor type="thinlens">\n{values}</sensor>'
@@ -198,6 +207,27 @@ CASES = [
     (4, thin_lens("float aperture_radius 0.1", "integer aperture_blades -5"), '"aperture_blades" must be from 0'),
     (4, thin_lens("float aperture_radius 0.1", "float principal_point_offset_x 0.1"), 'no parameter "principal_point'),
     (2, '<sensor type="perspective"><float name="aperture_radius" value="1"/></sensor>', 'no parameter "aperture_radius"'),
+    # motion
+    (4, animated(key(1), key(1)), '<transform>', "the times of keyframes must increase, got 1 after 1"),
+    (5, animated(key(0), key(2), key(1)), "must increase, got 1 after 2"),
+    (2, animated(key(0)), "<animation", 'needs two <transform time="..."> or more, got 1'),
+    (2, animated(), "needs two", "got 0"),
+    (4, animated(key(0), "<transform/>"), 'attribute "time" is missing'),
+    (4, animated(key(0), key("nan")), 'expected a finite number, got "nan"'),
+    (4, animated(key(0), key(1, '<scale x="0" y="1"/>')), "<scale>", "singular"),
+    (4, animated(key(0), key(1, '<scale x="-1"/>')), "inside out"),
+    (4, animated(key(0), key(1, '<rotate x="1" angle="inf"/>')), "finite"),
+    (4, animated(key(0), "<translate/>"), 'made of <transform time="..."> alone'),
+    (2, animated(key(0), key(1, '<scale x="2"/>'), kind='shape type="sphere"'), "equally along all axes"),
+    (2, animated(key(0), key(1, '<scale value="2"/>'), kind='sensor type="perspective"'), "must not scale or shear"),
+    (2, animated(key(0), key(1), kind='emitter type="point"'), '<emitter type="point"> cannot move'),
+    (2, animated(key(0), key(1), kind='emitter type="constant"'), '<emitter type="constant"> cannot move'),
+    (2, animated(key(0), key(1), kind='bsdf type="diffuse"'), 'no parameter "to_world"'),
+    (2, '<shape type="disk">' + 2 * '<animation name="to_world"><transform time="0"/><transform time="1"/></animation>' +
+     "</shape>", '"to_world" is given twice'),
+    (2, '<sensor type="perspective"><float name="shutter_open" value="1"/></sensor>', "must not close before it opens"),
+    (2, '<sensor type="perspective"><float name="shutter_open" value="1"/><float name="shutter_close" value="0.5"/></sensor>',
+     "shutter_open is 1, shutter_close 0.5"),
     # transforms
     (3, to_world('<scale value="0"/>'), "<scale>", "singular"),
     (3, to_world('<scale x="2" y="0"/>'), "<scale>", "singular"),

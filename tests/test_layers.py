@@ -11,12 +11,12 @@ PACKAGE = Path(__file__).parents[1] / "raylab"
 
 # The reading path, top to bottom; then what stands beside it.
 ORDER = [
-    "_version", "errors", "description", "jit", "vec3", "view", "record", "rng", "samplers", "sampling",
+    "_version", "errors", "description", "jit", "vec3", "view", "record", "pose", "rng", "samplers", "sampling",
     "solid_angle", "mis", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point", "lights",
-    "light_choice", "environment", "materials", "quadrics", "callbacks", "embree", "surface", "shadow", "shade",
-    "beyond", "glossy", "direct", "basic", "camera", "triangles", "geometry", "emitters", "palette", "sky", "sensor",
-    "scene", "strategies", "pixels", "image", "render", "probe", "ladders", "closed_forms", "io", "__init__",
-    "slides", "explain", "progress", "study", "figures", "demo", "stats", "cli",
+    "light_choice", "environment", "materials", "quadrics", "callbacks", "motion", "embree", "surface", "shadow",
+    "shade", "beyond", "glossy", "direct", "basic", "camera", "keyframes", "triangles", "geometry", "emitters",
+    "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe", "ladders",
+    "closed_forms", "io", "__init__", "slides", "explain", "progress", "study", "figures", "demo", "stats", "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
 

@@ -67,6 +67,15 @@ def through_lens(scene: Scene, aperture: float) -> Scene:
     return Scene(replace(scene.description, camera=eye))
 
 
+def moving_lamp(width: int, closed: float, fov: float = 45.0) -> Scene:
+    """The room, its lamp moving while the shutter is open from 0 to `closed`."""
+    still = room(width, fov=fov).description
+    floor, cube, light = still.shapes
+    motion = d.Animation(np.array([0.0, 1.0]), np.array([light.to_world, moved(0, -1, 3, 0.7, -0.7, -1)]))
+    eye = replace(still.camera, shutter_close=closed)
+    return Scene(replace(still, camera=eye, shapes=(floor, cube, replace(light, motion=motion))))
+
+
 @pytest.fixture(scope="module")
 def code() -> dict[str, str]:
     """Kernels of scenes that have more and more, all rendered by `direct`."""
@@ -75,6 +84,7 @@ def code() -> dict[str, str]:
     return {
         "nothing": machine_code(dark),
         "lamp": machine_code(room(4)),
+        "lamp, time": machine_code(moving_lamp(4, 1.0)),
         "lamp, lens": machine_code(through_lens(room(4), 0.1)),
         "constant sky": machine_code(outdoors(d.ConstantEnvironment(np.ones(3)), 4)),
         "image sky": machine_code(outdoors(d.ImageEnvironment(image), 4)),
@@ -98,6 +108,18 @@ def test_only_a_lens_brings_points_on_an_aperture(code):
     closed = through_lens(room(4), 0.0)  # the same types, so the same kernel
     assert numba.typeof(closed.camera) == numba.typeof(room(4).camera)
     assert "lens" not in closed.features
+
+
+def test_only_motion_brings_time(code):
+    """A frozen scene has the types, and so the kernel, of a static one."""
+    assert size(code["lamp, time"]) > size(code["lamp"])
+    frozen, static, data = moving_lamp(4, 0.0), room(4), moving_lamp(4, 1.0).data
+    assert all(numba.typeof(a) == numba.typeof(b) for a, b in zip(frozen.data, static.data, strict=True))
+    assert [
+        n for n, a, b in zip(data._fields, data, static.data, strict=True) if numba.typeof(a) != numba.typeof(b)
+    ] == ["motion"]
+    assert "motion" not in frozen.features
+    assert moving_lamp(4, 1.0).features == {"area lights", "motion"}
 
 
 def test_a_sky_brings_directions(code):
@@ -142,8 +164,18 @@ def test_the_slide_alone_is_no_longer_than_direct():
         (outdoors(d.ConstantEnvironment(np.ones(3)), 1, fov=0.1), 4),
         (through_lens(room(1, fov=0.1), 0.1), 6),
         (through_lens(room(1, fov=0.1), 0.0), 4),
+        (moving_lamp(1, 1.0, fov=0.1), 5),
+        (moving_lamp(1, 0.0, fov=0.1), 4),
     ],
-    ids=["pixel", "pixel and lamp", "pixel and sky", "pixel, lens and lamp", "pixel, closed lens and lamp"],
+    ids=[
+        "pixel",
+        "pixel and lamp",
+        "pixel and sky",
+        "pixel, lens and lamp",
+        "pixel, closed lens and lamp",
+        "pixel, time and lamp",
+        "pixel, frozen time and lamp",
+    ],
 )
 def test_no_dimension_is_spent_on_what_is_not_there(scene, dimensions):
     sampler = samplers.make("independent", 0, 1)

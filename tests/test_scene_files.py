@@ -681,3 +681,38 @@ def test_reading_a_plain_scene_imports_no_heavy_module(tmp_path: Path) -> None:
         [sys.executable, "-c", code, str(tmp_path / "test.xml")], capture_output=True, text=True, check=True
     )
     assert result.stdout.strip() == "[]"
+
+
+def test_animation_and_shutter_are_read(tmp_path):
+    path = tmp_path / "moving.xml"
+    path.write_text("""<scene version="3.0.0">
+        <sensor type="thinlens">
+            <float name="aperture_radius" value="0.25"/><float name="focus_distance" value="inf"/>
+            <integer name="aperture_blades" value="6"/><float name="aperture_rotation" value="15"/>
+            <float name="shutter_open" value="0.25"/><float name="shutter_close" value="0.75"/>
+            <animation name="to_world">
+                <transform time="0"><translate x="1"/></transform><transform time="2"><translate x="2"/></transform>
+            </animation>
+        </sensor>
+        <shape type="sphere">
+            <animation name="to_world">
+                <transform time="0"/>
+                <transform time="0.5"><scale value="2"/><rotate z="1" angle="90"/></transform>
+                <transform time="1"><translate y="3"/></transform>
+            </animation>
+        </shape>
+    </scene>""")
+    scene = read(path)
+    eye, ball = scene.camera, scene.shapes[0]
+    assert (eye.aperture_radius, eye.focus_distance, eye.aperture_blades, eye.aperture_rotation) == (
+        0.25,
+        np.inf,
+        6,
+        15,
+    )
+    assert (eye.shutter_open, eye.shutter_close) == (0.25, 0.75)
+    assert eye.motion.times.tolist() == [0.0, 2.0]
+    assert eye.motion.matrices[:, 0, 3].tolist() == [1.0, 2.0]
+    assert ball.motion.times.tolist() == [0.0, 0.5, 1.0]
+    assert np.allclose(ball.motion.matrices[1][:3, :3], [[0, -2, 0], [2, 0, 0], [0, 0, 2]], atol=1e-15)
+    assert ball.motion.matrices[2][1, 3] == 3.0

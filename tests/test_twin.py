@@ -64,6 +64,27 @@ def mirrors() -> Scene:
     )
 
 
+def dance() -> Scene:
+    """A mesh turns, a ball and two lamps move, and so does a camera with a lens."""
+
+    def moving(*matrices: np.ndarray) -> d.Animation:
+        return d.Animation(np.array([0.0, 1.0]), np.array(matrices))
+
+    turned = moved(0, 0, 0.5, 0.5, 0.5, 0.5)
+    turned[:2, :2] = [[0.3, -0.4], [0.4, 0.3]]
+    ball = np.asarray([[-1.0, 0, 0.4], [-1, 0.5, 0.4]])
+    shapes = (
+        *room(4).description.shapes[:1],
+        d.Cube(motion=moving(moved(0, 0, 0.5, 0.5, 0.5, 0.5), turned), front=GLOSSY),
+        d.Sphere(radius=0.3, motion=moving(*(moved(*p) for p in ball)), front=GLOSSY),
+        replace(lamp(), motion=moving(lamp().to_world, moved(0, -1, 3, 0.7, -0.7, -1))),
+        d.Sphere(radius=0.3, motion=moving(moved(0, -2, 3), moved(1, -2, 3)), radiance=np.full(3, 5.0), front=None),
+    )
+    pan = moving(camera(4).to_world, moved(0.1, 0, 0) @ camera(4).to_world)
+    eye = replace(camera(4), motion=pan, shutter_close=1.0, aperture_radius=0.1, focus_distance=5.0)
+    return Scene(d.SceneDescription(camera=eye, shapes=shapes))
+
+
 def scenes() -> dict[str, tuple[Scene, str, str]]:
     image = np.random.default_rng(3).random((6, 12, 3))
     texture = d.Diffuse(d.Bitmap(np.random.default_rng(4).random((3, 5, 3))))
@@ -81,6 +102,7 @@ def scenes() -> dict[str, tuple[Scene, str, str]]:
         "image": (outdoors(d.ImageEnvironment(image), 4, GLOSSY), "direct", "independent"),
         "brightness": (outdoors(d.ImageEnvironment(image, filter="nearest"), 4), "env_brightness", "independent"),
         "quadrics": (quadrics(), "direct", "independent"),
+        "motion": (dance(), "direct", "sobol"),
         "lens": (through_lens(0), "area", "sobol"),
         "lens with blades": (through_lens(5), "area", "stratified"),
         "mirrors": (mirrors(), "direct", "independent"),

@@ -7,11 +7,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from raylab.description import Animation, Array
 from raylab.errors import SceneError
 from raylab.io.xml_node import Node, Parameter
 from raylab.io.xml_tag import Tag, choices
 from raylab.io.xml_transform import compose
-from raylab.io.xml_values import VALUES, find_file
+from raylab.io.xml_values import VALUES, find_file, number
 
 OBJECTS = (
     "scene",
@@ -25,7 +28,7 @@ OBJECTS = (
     "texture",
     "emitter",
 )
-STATEMENTS = ("transform", "ref", "default", "include", "alias")
+STATEMENTS = ("transform", "animation", "ref", "default", "include", "alias")
 UNSUPPORTED = ("medium", "phase", "volume", "path")  # elements that Mitsuba 3 knows and raylab does not read
 MAX_INCLUDE_DEPTH = 15  # as in Mitsuba 3
 
@@ -113,6 +116,9 @@ class _Parser:
             tag.check_attributes(("name",))
             operations = [self.tag(child, tag.file) for child in _elements(element)]
             parent.add(name, Parameter("transform", compose(operations), tag))
+        elif tag.name == "animation":
+            tag.check_attributes(("name",))
+            parent.add(name, Parameter("animation", self.animation(element, tag), tag))
         elif tag.name in VALUES or tag.name in STATEMENTS:
             for child in _elements(element):
                 raise self.tag(child, tag.file).error(f"<{tag.name}> takes no nested elements")
@@ -126,6 +132,27 @@ class _Parser:
             known = (*OBJECTS, *VALUES, *STATEMENTS)
             missing = "raylab does not support this element" if tag.name in UNSUPPORTED else "unknown element"
             raise tag.error(f"{missing}; {choices(tag.name, known)}")
+
+    def animation(self, element: Any, tag: Tag) -> Animation:
+        """Keyframes: `<transform time="...">` at increasing times."""
+        times: list[float] = []
+        matrices: list[Array] = []
+        for child in _elements(element):
+            key = self.tag(child, tag.file)
+            if key.name != "transform":
+                raise key.error('an <animation> is made of <transform time="..."> alone')
+            key.check_attributes(("time",))
+            time = number(key, key.attributes["time"])
+            if times and time <= times[-1]:
+                raise key.error(f"the times of keyframes must increase, got {time:g} after {times[-1]:g}")
+            matrix = compose(self.tag(operation, tag.file) for operation in _elements(child))
+            if matrices and np.linalg.det(matrix[:3, :3]) * np.linalg.det(matrices[-1][:3, :3]) < 0:
+                raise key.error("this keyframe mirrors and the one before does not: a shape would turn inside out")
+            times.append(time)
+            matrices.append(matrix)
+        if len(times) < 2:
+            raise tag.error(f'an <animation> needs two <transform time="..."> or more, got {len(times)}')
+        return Animation(np.array(times), np.array(matrices))
 
     def do_ref(self, parent: Node, tag: Tag) -> None:
         tag.check_attributes(("id",), ("name",))

@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from raylab.description import Array
+import numpy as np
+
+from raylab.description import Animation, Array
 from raylab.errors import SceneError
 from raylab.io.xml_tag import Tag, choices
 
@@ -68,7 +70,9 @@ class Node:
                 raise self.error(f'<{kinds[0]} name="{name}"> is missing')
             return default
         if parameter.kind not in kinds:
-            wanted = " or ".join(f"<{kind}>" for kind in kinds)
+            if parameter.kind == "animation" and "transform" in kinds:
+                raise parameter.tag.error(f"{self.tag.label} cannot move; shapes, area lights and the sensor can")
+            wanted = " or ".join(f"<{kind}>" for kind in kinds if kind != "animation")
             raise parameter.tag.error(f'"{name}" must be given as {wanted}, not as <{parameter.tag.name}>')
         return parameter.value
 
@@ -115,6 +119,11 @@ class Node:
         """A (4, 4) matrix, local to world."""
         value: Array = self.ask(name, ("transform",), default)
         return value
+
+    def placing(self, name: str) -> tuple[Array, Animation | None]:
+        """Where something stands, and how it moves if it does; the matrix is that of the first keyframe."""
+        given = self.ask(name, ("transform", "animation"), np.eye(4))
+        return (given.matrices[0], given) if isinstance(given, Animation) else (given, None)
 
     def children(self, kind: str, most: int) -> list[Node]:
         """The nested objects of `kind`, at most `most` of them."""

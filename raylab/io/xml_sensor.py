@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import numpy as np
-
 from raylab.description import Camera, Filter
 from raylab.io.xml_context import Context
 from raylab.io.xml_node import Node
@@ -69,16 +67,22 @@ def _thinlens(node: Node, context: Context) -> tuple[Camera, Sampling | None]:
 def _camera(node: Node, context: Context, **lens: Any) -> tuple[Camera, Sampling | None]:
     film_node, sampler_node = node.child("film"), node.child("sampler")
     film = context.read(film_node, FILMS) if film_node else Film(768, 576, _GAUSSIAN)
-    to_world = node.transform("to_world", np.eye(4))
-    if not is_rigid(to_world):
+    to_world, motion = node.placing("to_world")
+    if not all(is_rigid(matrix) for matrix in (to_world[None] if motion is None else motion.matrices)):
         raise node.error("to_world of a camera must not scale or shear", "to_world")
     fov, axis = _field_of_view(node)
     near = node.number("near_clip", 1e-2, above=0)
     far = node.number("far_clip", 1e4, above=near)
-    for name in ("shutter_open", "shutter_close"):  # nothing moves
-        node.number(name, 0.0)
+    opened = node.number("shutter_open", 0.0)
+    closed = node.number("shutter_close", 0.0)
+    if closed < opened:
+        message = f"the shutter must not close before it opens: shutter_open is {opened:g}, shutter_close {closed:g}"
+        raise node.error(message, "shutter_close" if node.has("shutter_close") else "shutter_open")
     camera = Camera(
         to_world=to_world,
+        motion=motion,
+        shutter_open=opened,
+        shutter_close=closed,
         fov=fov,
         fov_axis=axis,
         near_clip=near,

@@ -28,14 +28,21 @@ def _common(node: Node, context: Context) -> dict[str, Any]:
         front, back = context.read(bsdf, BSDFS)
     else:
         front, back = (None if emitter else Diffuse()), None
+    to_world, motion = node.placing("to_world")
     return {
         "name": node.id,
         "front": front,
         "back": back,
         "radiance": None if emitter is None else context.read(emitter, SHAPE_EMITTERS),
-        "to_world": node.transform("to_world", np.eye(4)),
+        "to_world": to_world,
+        "motion": motion,
         "flip_normals": node.boolean("flip_normals", False),
     }
+
+
+def poses(common: dict[str, Any]) -> Array:
+    """(n, 4, 4): the matrices of all keyframes, or to_world alone."""
+    return common["to_world"][None] if common["motion"] is None else np.asarray(common["motion"].matrices)
 
 
 def _rectangle(node: Node, context: Context) -> Rectangle:
@@ -55,7 +62,7 @@ def _disk(node: Node, context: Context) -> Disk:
 def _sphere(node: Node, context: Context) -> Sphere:
     """A mirroring transform turns the normals of a sphere inside out, as in Mitsuba 3."""
     common = _common(node, context)
-    if similarity_error(common["to_world"]) > ROUND:
+    if any(similarity_error(matrix) > ROUND for matrix in poses(common)):
         raise node.error("to_world must scale a sphere equally along all axes, without shear", "to_world")
     if np.linalg.slogdet(common["to_world"][:3, :3]).sign < 0:
         common["flip_normals"] = not common["flip_normals"]
@@ -67,7 +74,7 @@ def _cylinder(node: Node, context: Context) -> Cylinder:
     p0, p1 = node.point("p0", np.zeros(3)), node.point("p1", np.array([0.0, 0.0, 1.0]))
     if np.array_equal(p0, p1):
         raise node.error("p0 and p1 of a cylinder must not be the same point", "p1")
-    if _section_error(common["to_world"], p1 - p0) > ROUND:
+    if any(_section_error(matrix, p1 - p0) > ROUND for matrix in poses(common)):
         raise node.error("to_world must keep a cylinder round and upright", "to_world")
     return Cylinder(p0=p0, p1=p1, radius=node.number("radius", 1.0, above=0), **common)
 

@@ -1,0 +1,488 @@
+"""Slides "Motion blur": keyframes, time in rays and shadows, and pictures whose blur has a closed form."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from helpers import ALPHA, U53, array, same_bits
+from scenes import GREY, camera, lamp, look_at, moved, room
+from scipy import integrate, stats
+from scipy.spatial.transform import Rotation
+
+from raylab import description as d
+from raylab import keyframes
+from raylab.closed_forms import blur
+from raylab.errors import SceneError
+from raylab.jit import njit
+from raylab.motion import Moving, Static, own_copy
+from raylab.pose import pose_at
+from raylab.render import render
+from raylab.sampling import sample_cos_hemisphere, sample_triangle
+from raylab.scene import Scene
+from raylab.shadow import shadow_toward
+from raylab.surface import intersect, round32, triangle_hit
+from raylab.vec3 import Vec3
+from raylab.view import View
+
+U24 = 2.0**-24
+DAY = (0.0, 1.0)  # the shutter
+
+
+def turned(degrees, axis=(0.0, 0.0, 1.0), offset=(0.0, 0.0, 0.0), size=(1.0, 1.0, 1.0)):
+    m = np.eye(4)
+    m[:3, :3] = Rotation.from_rotvec(np.radians(degrees) * np.array(axis)).as_matrix() * np.array(size)
+    m[:3, 3] = offset
+    return m
+
+
+def animation(*matrices, times=None):
+    return d.Animation(
+        np.linspace(0, 1, len(matrices)) if times is None else np.array(times, float), np.array(matrices)
+    )
+
+
+def shutter(eye, opened=0.0, closed=1.0):
+    return replace(eye, shutter_open=opened, shutter_close=closed)
+
+
+# --- keyframes ---
+
+
+def wild(seed, mirror=False):
+    """Keyframes with rotation, translation, stretch and shear."""
+    rng = np.random.default_rng(seed)
+    matrices = []
+    for _ in range(4):
+        m = np.eye(4)
+        m[:3, :3] = Rotation.random(rng=rng).as_matrix() @ (
+            np.diag([-1.0 if mirror else 1.0, 1, 1]) + rng.normal(0, 0.2, (3, 3))
+        )
+        m[:3, 3] = rng.normal(size=3)
+        matrices.append(m)
+    return animation(*matrices, times=[-0.2, 0.3, 0.45, 0.8])
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_a_keyframe_is_translation_rotation_and_stretch(mirror):
+    for m in wild(1, mirror).matrices:
+        t, r, s = keyframes.decompose(m)
+        assert np.abs(r @ s - m[:3, :3]).max() <= 32 * U53
+        assert np.abs(r @ r.T - np.eye(3)).max() <= 32 * U53
+        assert np.linalg.det(r) > 0
+        assert np.abs(s - s.T).max() <= 32 * U53
+        assert np.array_equal(t, m[:3, 3])
+
+
+@pytest.mark.parametrize(("degrees", "half"), [(90, 45), (179, 89.5), (-120, -60), (270, -45), (1e-6, 5e-7)])
+def test_rotation_takes_the_shorter_way_at_constant_speed(degrees, half):
+    """E09 too: an angle of 1e-8 is not lost, though its cosine is 1."""
+    m = keyframes.matrix_at(animation(turned(0), turned(degrees)), 0.5)
+    assert math.degrees(math.atan2(m[1, 0], m[0, 0])) == pytest.approx(half, rel=1e-8)
+
+
+def test_outside_its_keyframes_a_shape_stands_still():
+    """E08: Embree alone would extrapolate."""
+    motion = wild(2)
+    assert same_bits(keyframes.matrix_at(motion, -9.0).ravel(), motion.matrices[0].ravel())
+    assert same_bits(keyframes.matrix_at(motion, 9.0).ravel(), motion.matrices[-1].ravel())
+    for time, m in zip(motion.times, motion.matrices, strict=True):
+        assert same_bits(keyframes.matrix_at(motion, time).ravel(), m.ravel())
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_pose_is_the_matrix_at_that_time(mirror):
+    """What kernels evaluate, piece by piece, against the whole motion; with a local map and a placement."""
+    motion, local = wild(3, mirror), turned(20, (0, 1, 0), (0.3, 0.1, 0.2), (0.5, 2, 1))
+    rows = View(keyframes.table(motion, (-0.5, 1.5), local, np.array([1.0, 2, 3]), 0.25))
+    for u in np.linspace(0, 1, 41):
+        pose = pose_at(rows, 0, len(rows), u)
+        want = keyframes.matrix_at(motion, -0.5 + 2 * u) @ local
+        got = np.stack([array(pose.x), array(pose.y), array(pose.z)], axis=1)
+        assert np.abs(got - want[:3, :3] * 0.25).max() <= 256 * U53
+        assert np.abs(array(pose.p) - (want[:3, 3] - [1, 2, 3]) * 0.25).max() <= 256 * U53
+        assert np.abs(np.array([[*row] for row in pose.inverse_rows()]) @ got - np.eye(3)).max() <= 1e-12
+
+
+# --- chords ---
+
+
+def deviation(motion, points, segments):
+    """How far chords stand off the path: at 33 times in each part."""
+    ends = keyframes.samples(motion, DAY, segments)
+    worst = 0.0
+    for k in range(segments):
+        for s in np.linspace(0, 1, 33):
+            exact = keyframes.matrix_at(motion, (k + s) / segments)
+            chord = ends[k] + s * (ends[k + 1] - ends[k])
+            off = points @ (chord - exact)[:3, :3].T + (chord - exact)[:3, 3]
+            worst = max(worst, float(np.linalg.norm(off, axis=1).max()))
+    return worst
+
+
+POINTS = np.array([[1.0, 0, 0], [0, 0.5, 0.2], [-0.7, 0.1, -0.4]])
+
+
+@pytest.mark.parametrize("segments", [1, 2, 4, 16])
+@pytest.mark.parametrize("seed", [4, 5])
+def test_chords_stay_within_their_bound(segments, seed):
+    motion = wild(seed)
+    assert deviation(motion, POINTS, segments) <= keyframes.chord_error(motion, DAY, POINTS, segments)
+
+
+def test_the_bound_of_a_rotation_is_r_dtheta_squared_over_8():
+    """The sagitta r (1 - cos(dtheta / 2)) = r dtheta^2 / 8 - ...: the bound is sharp, and of order 2."""
+    motion = animation(turned(0), turned(90))
+    for n in (4, 16):
+        step = math.radians(90) / n
+        assert keyframes.chord_error(motion, DAY, POINTS, n) == pytest.approx(step**2 / 8, rel=1e-9)  # r = 1
+        assert deviation(motion, POINTS, n) == pytest.approx(1 - math.cos(step / 2), rel=1e-9)
+
+
+def test_straight_motion_needs_one_part_and_is_exact():
+    straight = animation(moved(0, 0, 0), moved(3, 1, 2, 2, 2, 2))
+    assert keyframes.segments_needed(straight, DAY, POINTS) == (1, 0.0)
+    bent = animation(moved(0, 0, 0), moved(3, 1, 2), moved(0, 0, 0))  # a keyframe on a time step costs nothing
+    assert keyframes.segments_needed(bent, DAY, POINTS) == (2, 0.0)
+
+
+def path_scene(motion, shape, **more):
+    """A scene of one moving shape, and a static floor below."""
+    floor = d.Rectangle(to_world=moved(0, 0, -2, 3, 3, 1), front=GREY)
+    return Scene(d.SceneDescription(camera=shutter(camera(4)), shapes=(floor, replace(shape, motion=motion)), **more))
+
+
+@njit
+def hit_at(scene, time, o, w):
+    scene.motion.set(time)
+    return intersect(scene, o, w, 0.0, math.inf)
+
+
+CORNERS = np.array([[0.9, -0.1, 0.0], [1.1, -0.1, 0], [1.0, 0.2, 0]])
+TRIANGLE = d.Mesh(vertices=CORNERS, faces=np.array([[0, 1, 2]]), front=GREY, back=GREY)
+
+
+def test_a_rotating_mesh_is_where_its_closed_form_says():
+    """A triangle goes round the axis; rays straight down meet it within the stated bound, at any time."""
+    scene = path_scene(animation(turned(0), turned(160)), TRIANGLE)
+    p = scene.placement
+    assert 0.0 < scene.motion_error <= keyframes.TOLERANCE * 2.3
+    inner = scene.motion_error * 1.5 / 0.05  # of the triangle, in units of its smallest height, stay within it
+    assert inner < 0.1
+    for t in np.float32([0.0, 0.123, 0.5, 0.777, 1.0]):
+        rotation = turned(160 * float(t))[:3, :3]
+        for b in ([0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.2, 0.2, 0.6]):
+            x = p.points(rotation @ (np.array(b) @ CORNERS))
+            hit = hit_at(scene.data, float(t), round32(Vec3(x[0], x[1], 0.75)), Vec3(0.0, 0.0, -1.0))
+            assert hit.found
+            assert hit.shape == 1
+            assert abs(hit.x.p.z - p.points([0, 0, 0.0])[2]) <= 4 * U24
+        for b in ([1.2, -0.1, -0.1], [-0.1, 1.2, -0.1], [-0.1, -0.1, 1.2]):
+            x = p.points(rotation @ (np.array(b) @ CORNERS))
+            assert hit_at(scene.data, float(t), round32(Vec3(x[0], x[1], 0.75)), Vec3(0.0, 0.0, -1.0)).shape == 0
+
+
+@pytest.mark.parametrize("shape", [
+    d.Sphere(center=np.array([1.0, 0, 0]), radius=0.25, front=GREY),
+    d.Disk(front=GREY),
+    d.Cylinder(p0=np.array([1.0, 0, 0]), p1=np.array([1.0, 0, 1.0]), radius=0.2, front=GREY, back=GREY),
+])  # fmt: skip
+def test_a_rotating_quadric_is_exact(shape):
+    """The hit lies on the quadric of that very time, to float32 of the ray; Embree's boxes never miss it."""
+    motion = animation(
+        turned(0, (0.6, 0, 0.8), (0, 0, 1)), turned(170, (0.6, 0, 0.8), (0.5, 0, 1)), turned(40, (0, 1, 0))
+    )
+    scene, rng = path_scene(motion, shape), np.random.default_rng(8)
+    p, found = scene.placement, 0
+    for t in np.float32(rng.random(60)):
+        matrix = keyframes.matrix_at(motion, float(t))
+        still = Scene(replace(scene.description, camera=camera(4), shapes=(
+            scene.description.shapes[0], replace(shape, motion=None, to_world=matrix))))  # fmt: skip
+        target = (
+            matrix[:3, :3]
+            @ (
+                rng.normal(0, 0.1, 3)
+                + (getattr(shape, "center", None) if isinstance(shape, d.Sphere) else getattr(shape, "p0", np.zeros(3)))
+            )
+            + matrix[:3, 3]
+        )
+        eye = np.array([0.2, -2.5, 2.5])
+        o, w = round32(Vec3(*p.points(eye))), round32(Vec3(*(p.points(target) - p.points(eye))))
+        hit = hit_at(scene.data, float(t), o, w)
+        world_o = array(o) / p.scale + p.centre
+        s = still.placement
+        other = intersect(
+            still.data, round32(Vec3(*s.points(world_o))), round32(Vec3(*(array(w) / p.scale * s.scale))), 0.0, math.inf
+        )
+        assert hit.found == other.found
+        assert hit.shape == other.shape
+        found += hit.shape == 1
+        if hit.shape == 1 and abs(np.dot(array(hit.N), array(w))) > 0.1 * np.linalg.norm(array(w)):
+            where = array(hit.x.p) / p.scale + p.centre
+            assert np.abs(where - (array(other.x.p) / s.scale + s.centre)).max() <= 1e3 * U24
+    assert found > 20
+
+
+# --- the frozen shutter ---
+
+
+def dance(**eye):
+    """Everything moves: a mesh, a quadric, a lamp and the camera."""
+    lamp_motion = animation(lamp().to_world, moved(0, -1, 3, 0.7, -0.7, -1))
+    pan = animation(camera(8).to_world, look_at((0.3, -5, 3), (0.1, 0, 0.5)))
+    shapes = (
+        d.Rectangle(to_world=moved(0, 0, 0, 4, 4, 1), front=GREY, back=GREY),
+        d.Cube(motion=animation(moved(0, 0, 0.5, 0.5, 0.5, 0.5), turned(80, size=(0.5,) * 3, offset=(0.5, 0, 0.6))),
+               front=GREY),
+        d.Sphere(motion=animation(moved(-1, 0, 0.4, 0.3, 0.3, 0.3), moved(-1, 1, 0.4, 0.3, 0.3, 0.3)), front=GREY),
+        replace(lamp(), motion=lamp_motion),
+    )  # fmt: skip
+    return d.SceneDescription(camera=replace(camera(8), motion=pan, **eye), shapes=shapes)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.3, 1.0, 7.0])
+def test_a_frozen_shutter_is_the_static_picture_bit_for_bit(time):
+    """E06: no time is drawn, nothing of motion is compiled."""
+    described = dance(shutter_open=time, shutter_close=time)
+
+    def put(thing):
+        return (
+            thing
+            if thing.motion is None
+            else replace(thing, to_world=keyframes.matrix_at(thing.motion, time), motion=None)
+        )
+
+    still = replace(described, camera=put(described.camera), shapes=tuple(put(s) for s in described.shapes))
+    frozen, plain = Scene(described), Scene(still)
+    assert isinstance(frozen.data.motion, Static)
+    assert frozen.features == plain.features
+    assert same_bits(render(frozen, spp=2).mean, render(plain, spp=2).mean)
+
+
+def test_what_stands_still_while_the_shutter_is_open_is_static():
+    scene = Scene(dance(shutter_open=2.0, shutter_close=3.0))
+    assert isinstance(scene.data.motion, Static)
+    assert isinstance(Scene(dance(shutter_open=0.9, shutter_close=3.0)).data.motion, Moving)
+
+
+def test_threads_and_bands_change_nothing():
+    scene = Scene(dance(shutter_open=0.1, shutter_close=0.9))
+    assert scene.features >= {"motion"}
+    one = render(scene, spp=4, threads=1, band_rows=1)
+    assert same_bits(one.mean, render(scene, spp=4, threads=3, band_rows=3).mean)
+    assert one.invalid_samples == 0
+
+
+# --- case C2: a moving edge ---
+
+
+def test_closed_forms_of_motion():
+    """Case C2 and another by quadrature over time; C3 by quadrature over the height."""
+    assert blur.moving_edge(-0.5, 2.0, (0.0, 1.0)) == 0.5
+    share, _ = integrate.quad(lambda t: min(max(-0.3 + 1.7 * t, 0), 1), 0, 1, points=[0.3 / 1.7, 1.3 / 1.7])
+    assert blur.moving_edge(-0.3, 1.7, (0.0, 1.0)) == pytest.approx(share, abs=1e-9)
+    disk, _ = integrate.quad(lambda h: math.pi * 1.5**2 / (1.5**2 + h * h) / 2, 1, 3)
+    assert math.pi * blur.moving_disk_light(1.5, 1.0, 3.0) == pytest.approx(disk, rel=1e-12)
+    assert math.pi * blur.moving_disk_light(1.5, 1.0, 3.0) == pytest.approx(1.22320921399, abs=5e-12)
+
+
+def edge(first, speed, width, moving_eye=False, depth=10.0, rows=1024):
+    """One column of pixels, `width` wide at the depth of a shining half-plane x < first + speed t: all the same."""
+    fov = math.degrees(2 * math.atan(width / 2 / depth))
+    plane = d.Rectangle(to_world=moved(first - 50, 0, depth, -50, 2000, -1), radiance=np.ones(3), front=None)
+    eye = d.Camera(fov=fov, width=1, height=rows)
+    if moving_eye:
+        eye = replace(eye, motion=animation(np.eye(4), moved(-speed, 0, 0)))
+    else:
+        plane = replace(plane, motion=animation(plane.to_world, moved(first + speed - 50, 0, depth, -50, 2000, -1)))
+    return Scene(d.SceneDescription(camera=shutter(eye), shapes=(plane,)))
+
+
+def mean_and_variance(scene, sampler, n, seed):
+    """Of the pixels of one column, each the mean of n samples (of each of two streams)."""
+    streams = 1 if sampler == "independent" else 2
+    pixels = render(scene, sampler=sampler, spp=n * streams, seed=seed).mean[..., 0].ravel()
+    return pixels, streams
+
+
+@pytest.mark.parametrize("sampler", ["independent", "stratified", "sobol"])
+def test_a_moving_edge_covers_a_pixel_as_the_formula_says(sampler):
+    """Pixels with a width, and pixels like points, whose variance is known: F (1 - F) / N, N^-2 for strata of time.
+
+    Only the stratum in which the edge passes counts: p (1 - p) / N^2. Family error 1e-6.
+    """
+    want = blur.moving_edge(-0.3, 1.7, (0.0, 1.0))
+    pixels, _ = mean_and_variance(edge(-0.3 - 0.5, 1.7, 1.0), sampler, 64, 5)
+    assert abs(pixels.mean() - want) < stats.norm.isf(ALPHA / 16) * stats.sem(pixels)
+    scene, covered = edge(-0.6, 2.0, 1e-9), 0.7  # the edge passes at t = 0.3
+    for n in (16, 256):
+        pixels, streams = mean_and_variance(scene, sampler, n, 6)
+        assert abs(pixels.mean() - covered) < stats.norm.isf(ALPHA / 16) * stats.sem(pixels) + 4 * U24
+        p = (covered * n) % 1.0
+        theory = covered * (1 - covered) / n if sampler == "independent" else p * (1 - p) / n**2
+        ratio = ((pixels - covered) ** 2).sum() * streams / theory
+        low, high = stats.chi2.ppf([ALPHA / 16, 1 - ALPHA / 16], len(pixels))
+        if sampler != "sobol" or n == 16:  # a Sobol' dimension is stratified too
+            assert low < ratio < high, (sampler, n)
+
+
+def test_a_moving_camera_blurs_like_a_moving_world():
+    scene = edge(-0.3 - 0.5, 1.7, 1.0, moving_eye=True)
+    assert isinstance(scene.data.motion, Moving)
+    want = blur.moving_edge(-0.3, 1.7, (0.0, 1.0))
+    pixels, _ = mean_and_variance(scene, "independent", 64, 7)
+    assert abs(pixels.mean() - want) < stats.norm.isf(ALPHA) * math.sqrt(want * (1 - want) / 64 / len(pixels))
+
+
+# --- case C3: lights that move ---
+
+
+def receiver(*lights, size=16):
+    """A small white square at the origin, facing +z, seen from the side."""
+    square = d.Rectangle(to_world=moved(0, 0, 0, 1e-3, 1e-3, 1), front=d.Diffuse(np.ones(3)))
+    eye = d.Camera(to_world=look_at((0.4, 0, 0.3), (0, 0, 0), (0, 1, 0)), fov=1e-5, width=size, height=size)
+    return Scene(d.SceneDescription(camera=shutter(eye), shapes=(square, *lights)))
+
+
+def test_a_rising_disk_light_gives_case_c3():
+    def disk(h):
+        return moved(0, 0, h, 1.5, -1.5, -1)
+
+    light = d.Disk(motion=animation(disk(1.0), disk(3.0)), radiance=np.ones(3), front=None)
+    image = render(receiver(light), "area", sampler="independent", spp=512, seed=9)
+    want = blur.moving_disk_light(1.5, 1.0, 3.0)  # E / pi
+    error = math.hypot(image.image_standard_error[0], 0.0)
+    assert abs(image.image_mean[0] - want) < stats.norm.isf(ALPHA) * error
+    assert error < 0.002 * want
+
+
+def test_moving_lights_of_every_kind_light_as_they_stand():
+    """A square, a triangle, a cube, a sphere, a disk and a cylinder move and turn at once; each alone hides nothing.
+
+    Against the same lights standing at the 16 nodes of a Gauss rule in time, sampled by the same estimator.
+    """
+
+    def lights(t=None):
+        box = {"radiance": np.ones(3), "front": None}
+        triangle = np.array([[-0.5, -0.5, 0.0], [0.5, -0.5, 0], [0, 0.6, 0]])
+        kinds = [
+            d.Rectangle(**box),
+            d.Mesh(vertices=triangle, faces=np.array([[0, 1, 2]]), **box),
+            d.Cube(**box),
+            d.Sphere(**box),
+            d.Disk(**box),
+            d.Cylinder(**box),
+        ]
+        made = []
+        for k, shape in enumerate(kinds):
+            turn = np.array([math.cos(k * math.pi / 3), math.sin(k * math.pi / 3)])
+            keys = [turned(180 + a, (turn[1], -turn[0], 0), (*(2.2 * turn * (1 + b)), 1.6 + b), (0.4,) * 3)
+                    for a, b in ((20.0, 0.0), (60.0, 0.4))]  # fmt: skip
+            motion = animation(*keys)
+            made.append(
+                replace(shape, motion=motion) if t is None else replace(shape, to_world=keyframes.matrix_at(motion, t))
+            )
+        return made
+
+    image = render(receiver(*lights()), "area", sampler="sobol", spp=512, seed=9)
+    nodes, weights = np.polynomial.legendre.leggauss(5)
+    still = [
+        render(receiver(*lights(0.5 + 0.5 * x)), "area", sampler="sobol", spp=64, seed=k) for k, x in enumerate(nodes)
+    ]
+    want = sum(w / 2 * s.image_mean[0] for w, s in zip(weights, still, strict=True))
+    error = math.sqrt(
+        image.image_standard_error[0] ** 2
+        + sum((w / 2 * s.image_standard_error[0]) ** 2 for w, s in zip(weights, still, strict=True))
+    )
+    assert abs(image.image_mean[0] - want) < stats.norm.isf(ALPHA) * error + 1e-5 * want
+    assert error < 0.002 * want
+
+
+# --- shadows ---
+
+
+@njit
+def leave_moving_surface(scene, targets, directions, times, hits):
+    """From points on a moving triangle, rays over the hemisphere: how many hit something."""
+    for i in range(len(targets)):
+        scene.motion.set(times[i])
+        motion, vertices = scene.motion, scene.vertices
+        v0, v1, v2 = motion.vertex(vertices, 0, 0), motion.vertex(vertices, 0, 1), motion.vertex(vertices, 0, 2)
+        b1, b2 = sample_triangle((targets[i, 0], targets[i, 1]))
+        p = v0 + (v1 - v0) * b1 + (v2 - v0) * b2
+        o = round32(Vec3(p.x + 0.1, p.y + 0.2, p.z + 0.5))
+        hit = triangle_hit(scene, 0, 0, o, round32(p - o))
+        w = sample_cos_hemisphere(hit.x.n, (directions[i, 0], directions[i, 1]))
+        hits[0] += shadow_toward(scene, hit.x, w)
+
+
+@pytest.mark.parametrize("aspect", [1.0, 1e-2])
+@pytest.mark.parametrize("scale", [1.0, 1e6])
+def test_a_moving_triangle_never_shadows_itself(aspect, scale):
+    """The offset bound holds with Embree's own interpolation in float32; nothing else is there to be hit."""
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0.3, aspect, 0]])
+    keys = [
+        turned(10, (0.6, 0, 0.8), (0, 0, 0), (scale,) * 3),
+        turned(130, (0, 0.6, 0.8), (2 * scale, 0.7 * scale, 0), (scale,) * 3),
+    ]
+    shape = d.Mesh(vertices=corners, faces=np.array([[0, 1, 2]]), motion=animation(*keys), front=GREY, back=GREY)
+    scene = Scene(d.SceneDescription(camera=shutter(d.Camera()), shapes=(shape,)))
+    rng, n = np.random.default_rng(11), 40_000
+    u = rng.random((n, 2))
+    u[:, 0] = 1.0 - 10.0 ** rng.uniform(-14, 0, n)
+    times = np.float32(rng.random(n)).astype(float)
+    hits = View(np.zeros(1, np.int64))
+    leave_moving_surface(scene.data, View(rng.random((n, 2))), View(u), View(times), hits)
+    assert hits[0] == 0
+
+
+def test_shadows_are_those_of_the_instant():
+    """A plate crosses the light: half of the time the floor is dark, whatever the time of the eye ray's own surface."""
+    plate = d.Rectangle(
+        motion=animation(moved(-1.0, 0, 0.5, 1, 1, 1), moved(1.0, 0, 0.5, 1, 1, 1)), front=GREY, back=GREY
+    )
+    light = d.Rectangle(to_world=moved(0, 0, 1, 1e-4, -1e-4, -1), radiance=np.full(3, 1e8), front=None)
+    dark = d.Rectangle(
+        motion=animation(moved(-2.0, 0, 0.5, 1, 1, 1), moved(2.0, 0, 0.5, 1, 1, 1)), front=GREY, back=GREY
+    )
+    bright = render(receiver(light, size=8), "area", sampler="independent", spp=64).image_mean[0]
+    assert render(receiver(light, plate, size=8), "area", sampler="independent", spp=64).image_mean[0] == 0.0
+    image = render(receiver(light, dark, size=8), "area", sampler="independent", spp=512)
+    want, n = 0.5 * bright, 512 * 64
+    assert abs(image.image_mean[0] - want) < stats.norm.isf(ALPHA) * bright * 0.5 / math.sqrt(n) + 1e-6 * bright
+
+
+def test_each_thread_has_its_own_clock_and_lights():
+    scene = Scene(dance(shutter_open=0.0, shutter_close=1.0))
+    data, eye = own_copy(scene.data, scene.camera)
+    data.motion.set(0.75)
+    assert scene.data.motion.time() == 0.0
+    assert eye.clock is data.motion.clock
+    assert data.quadrics.table.store is data.motion.clock
+    assert not same_bits(data.lights.rows.array.ravel(), scene.data.lights.rows.array.ravel())
+    assert own_copy(room(4).data, None) == (room(4).data, None) or isinstance(room(4).data.motion, Static)
+
+
+BAD = [
+    (animation(np.eye(4)), "two keyframes or more, got 1"),
+    (animation(np.eye(4), np.eye(4), times=[1, 0]), "must be finite and increase"),
+    (animation(np.eye(4), np.eye(4), times=[1, 1]), "must be finite and increase"),
+    (animation(np.eye(4), np.eye(4), times=[0, np.nan]), "must be finite and increase"),
+    (animation(np.eye(4), np.diag([1.0, 1, 0, 1])), "time 1 squeezes space flat"),
+    (animation(np.eye(4), np.full((4, 4), np.nan)), "time 1 must be finite"),
+    (animation(np.eye(4), np.diag([1.0, 1, -1, 1])), "inside out"),
+]
+
+
+@pytest.mark.parametrize(("motion", "message"), BAD)
+def test_keyframes_that_make_no_sense_are_refused(motion, message):
+    with pytest.raises(SceneError, match=message):
+        path_scene(motion, TRIANGLE)
+
+
+@pytest.mark.parametrize("interval", [(1.0, 0.0), (0.0, math.nan), (-math.inf, 0.0)])
+def test_a_shutter_that_closes_before_it_opens_is_refused(interval):
+    with pytest.raises(SceneError, match="shutter_open <= shutter_close"):
+        Scene(dance(shutter_open=interval[0], shutter_close=interval[1]))
