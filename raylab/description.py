@@ -219,11 +219,16 @@ class GradientEnvironment:
 
 @dataclass(frozen=True, eq=False)
 class ImageEnvironment:
-    """A latitude-longitude image: `pixels` (h, w, 3) linear RGB radiance, row 0 at local +y; placed by `to_world`."""
+    """A latitude-longitude image: `pixels` (h, w, 3) linear RGB radiance, row 0 at local +y; placed by `to_world`.
+
+    With `mis_compensation` only what is brighter than the mean is sampled by brightness; the BRDF's samples find the
+    rest, so that only shades that combine both may use it (`direct`, `mis_balance`, `mis_power`).
+    """
 
     pixels: Array
     to_world: Array = field(default_factory=_identity)
     filter: Literal["bilinear", "nearest"] = "bilinear"
+    mis_compensation: bool = False
 
 
 Light = PointLight | DirectionalLight

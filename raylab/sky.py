@@ -70,7 +70,10 @@ def image_environment(described: d.ImageEnvironment) -> Any:
         brightness = around[:-1] + around[1:]
     rows = len(brightness)
     heights = np.cos(np.linspace(0.0, np.pi, rows + 1))
-    weights = brightness * (heights[:-1] - heights[1:])[:, None]
+    sizes = (heights[:-1] - heights[1:])[:, None]
+    if described.mis_compensation:
+        brightness = compensated(brightness, sizes)
+    weights = brightness * sizes
     kind = env.Bilinear if smooth else env.Nearest
     texels = kind(View(pixels.reshape(-1, 3).astype(np.float32)), width, height)
     right, up, back = (Vec3(*axis) for axis in rotation(described.to_world))
@@ -78,6 +81,17 @@ def image_environment(described: d.ImageEnvironment) -> Any:
     return env.ImageEnvironment(
         right, up, back, rows, width, View(heights), View(shares(totals)), View(shares(weights)), texels
     )
+
+
+def compensated(brightness: Array, sizes: Array) -> Array:
+    """What is above the mean over the sphere, max(0, L - mean L): Karlik et al. 2019, "MIS compensation".
+
+    Where the other technique is as likely everywhere, sampling the mean again would be wasted. A sky without
+    contrast stays as it is.
+    """
+    mean = (brightness * sizes).sum() / (sizes.sum() * brightness.shape[1])
+    above = np.maximum(0.0, brightness - mean * (1.0 + 2.0**-40))
+    return above if above.max() > 0.0 else brightness
 
 
 def shares(weights: Array) -> Array:

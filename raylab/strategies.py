@@ -105,6 +105,11 @@ def strategy(shade: str | Callable[..., Any], scene: Scene) -> Any:
     if diffuse and "glossy BRDF" in scene.features:
         other = {"area_diffuse": "area", "env_uniform": "env_brdf", "env_cosine": "env_brdf"}[shade]
         raise UserError(f"shade {shade!r} is for diffuse surfaces, but the scene has a glossy BRDF; try {other!r}")
+    if shade == "env_brightness" and getattr(scene.description.environment, "mis_compensation", False):
+        raise UserError(
+            "shade 'env_brightness' would miss what mis_compensation leaves to the BRDF's samples; use mis_balance, "
+            "mis_power or direct, or set mis_compensation to false"
+        )
     return _CLASSES[shade](hide)
 
 

@@ -30,8 +30,8 @@ def image(height=5, width=8, seed=0):
     return (np.random.default_rng(seed).random((height, width, 3)) ** 4 * 10).astype(np.float32).astype(float)
 
 
-def make(pixels, kind="nearest", to_world=TURN):
-    return make_environment(d.ImageEnvironment(pixels=pixels, filter=kind, to_world=to_world))
+def make(pixels, kind="nearest", to_world=TURN, **more):
+    return make_environment(d.ImageEnvironment(pixels=pixels, filter=kind, to_world=to_world, **more))
 
 
 @njit
@@ -257,6 +257,27 @@ def test_the_density_is_one_over_the_jacobian(kind):
     # Within h of a cell's edge the differences straddle it: there are 40 + 5 edges, a share below 1e-4 of the square.
     assert np.median(np.abs(product - 1.0)) <= 1e-7
     assert np.mean(np.abs(product - 1.0) > 1e-3) <= 0.01
+
+
+def test_mis_compensation_samples_what_is_above_the_mean():
+    """Karlik et al. 2019: p proportional to max(0, L - mean of L over the sphere)."""
+    pixels = image()
+    edges_of = np.cos(np.linspace(0.0, PI, len(pixels) + 1))
+    sizes = 2.0 * PI / pixels.shape[1] * (edges_of[:-1] - edges_of[1:])[:, None]
+    L = pixels @ [0.2126, 0.7152, 0.0722]
+    above = np.maximum(0.0, L - (L * sizes).sum() / (4.0 * PI))
+    sky = make(pixels, mis_compensation=True)
+    z = (edges_of[:-1] + edges_of[1:]) / 2.0
+    turns = (np.arange(pixels.shape[1]) + 0.5) / pixels.shape[1]
+    w = directions(np.repeat(z, len(turns)), np.tile(turns, len(z)))
+    p = look(sky, w)[1].reshape(above.shape)
+    assert p == pytest.approx(above / (above * sizes).sum(), rel=1e-9, abs=1e-12)
+    assert (p == 0.0).any()
+
+
+def test_mis_compensation_of_a_sky_without_contrast_changes_nothing():
+    grey = np.full((4, 8, 3), 0.7)
+    assert make(grey, mis_compensation=True).cell_cdf.array.tolist() == make(grey).cell_cdf.array.tolist()
 
 
 def test_the_density_of_texels_is_proportional_to_their_luminance():

@@ -3,21 +3,36 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numba
 import numpy as np
 import pytest
 from helpers import ALPHA, U53, chi_square_p, size
 from scipy import integrate
-from test_closed_form_renders import LIGHT, RHO, WHITE, N, Z, check, check_variance, render, scene, sphere
+from test_closed_form_renders import (
+    LIGHT,
+    RHO,
+    WHITE,
+    N,
+    Z,
+    check,
+    check_variance,
+    image_sky,
+    render,
+    scene,
+    sky_scene,
+    sphere,
+)  # fmt: skip
 
 import raylab
 from raylab import description as d
 from raylab import light_choice, mis
 from raylab.closed_forms import irradiance as forms
-from raylab.errors import SceneError
+from raylab.errors import SceneError, UserError
 from raylab.jit import njit
 from raylab.ladders import frame
+from raylab.strategies import strategy
 
 compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a quarter of a million samples each")
 DENSITIES = [0.0, 1e-300, 1e-160, 1e-20, 0.3, 1.0, 7.0, 1e20, 1e160, 1e300, math.inf]
@@ -205,3 +220,32 @@ def test_direct_takes_one_of_many_lights(exponent):
     one, all_ = render(many, "direct"), raylab.render(many, "mis_balance", spp=1 << 13, seed=2)
     error = np.hypot(one.standard_error, all_.standard_error)
     assert np.all(np.abs(one.mean - all_.mean) <= 4.5 * error + 1e-6 * all_.mean)
+
+
+# --- an image of the sky ---
+
+
+def sky(compensation):
+    """`test_image_sky` of the closed forms: the upper three of nine rows are lit, one texel brightly."""
+    pixels = np.zeros((9, 16, 3))
+    pixels[:3] = np.random.default_rng(7).random((3, 16, 3)) ** 3
+    pixels[1, 5] = (40.0, 10.0, 20.0)
+    n = np.array([0.2, -0.3, math.sqrt(0.87)])
+    v, _ = forms.texels(9, 16)
+    truth = RHO / math.pi * np.einsum("ijc,ijk,k->c", pixels, v, n)
+    return sky_scene(replace(image_sky(pixels), mis_compensation=compensation), n=n), truth
+
+
+@compiled
+@pytest.mark.parametrize("shade", ["direct", "mis_balance", "mis_power"])
+@pytest.mark.parametrize("compensation", [False, True])
+def test_the_combination_under_an_image_sky(shade, compensation):
+    """Compensated, most texels are out of the sky's own reach: the BRDF's samples find them, and nothing is lost."""
+    there, truth = sky(compensation)
+    check(render(there, shade), truth)
+
+
+def test_compensation_needs_the_combination():
+    with pytest.raises(UserError, match="would miss what mis_compensation leaves to the BRDF"):
+        strategy("env_brightness", sky(True)[0])
+    assert strategy("env_brightness", sky(False)[0])

@@ -57,14 +57,15 @@ def _constant(node: Node, context: Context) -> ConstantEnvironment:
 
 def _envmap(node: Node, context: Context) -> ImageEnvironment:
     _sampling_weight(node)
-    node.boolean("mis_compensation", False)
+    compensation = node.boolean("mis_compensation", False)
     scale = node.number("scale", 1.0)
     if scale < 0:
         raise node.error(f'"scale" must not be negative, got {scale:g}', "scale")
     to_world = node.transform("to_world", np.eye(4))
     if not is_rigid(to_world):
         raise node.error("to_world of an environment may rotate and mirror, not scale or shear", "to_world")
-    return ImageEnvironment(scale * context.image(node, raw=False, upper=np.inf), to_world)
+    pixels = scale * context.image(node, raw=False, upper=np.inf)
+    return ImageEnvironment(pixels, to_world, mis_compensation=compensation)
 
 
 def _area(node: Node, context: Context) -> Array:
