@@ -16,7 +16,9 @@ ORDER = [
     "light_choice", "environment", "materials", "quadrics", "callbacks", "motion", "embree", "surface", "shadow",
     "shade", "beyond", "glossy", "direct", "basic", "camera", "keyframes", "triangles", "geometry", "emitters",
     "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe", "ladders",
-    "closed_forms", "io", "__init__", "slides", "explain", "progress", "study", "figures", "demo", "stats", "cli",
+    "closed_forms", "io", "__init__", "slides", "explain", "progress", "study", "figures", "demo", "stats",
+    "trials", "testing",
+    "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
 
