@@ -230,8 +230,8 @@ def glossy_polygons(rng: np.random.Generator) -> Trial:
     triangle = corners_in(facing(rng, 10.0, turn + 110.0, 1.3, 20.0), [(0.5, 0.1), (-0.3, 0.45), (-0.2, -0.5)])
     colours = [colour(rng, 0.5, 5.0) for _ in range(2)]
     lights = list(zip((lamp, triangle), colours, strict=True))
-    lobe = sum(c * specular * phong.polygon(p, n, r) for p, c in lights)
-    truth = lobe + sum(c * diffuse / math.pi * float(forms.polygon(p)) for p, c in lights)
+    lobe = specular * np.sum([c * phong.polygon(p, n, r) for p, c in lights], axis=0)
+    truth = lobe + diffuse / math.pi * np.sum([c * float(forms.polygon(p)) for p, c in lights], axis=0)
     largest = diffuse / math.pi + specular * (n + 2) / (2.0 * math.pi)
     bounds, brightest = np.array([c * largest * steepness(p) for p, c in lights]), np.maximum(*colours)
     powers = [area_of(p) * float(LUMINANCE @ c) for p, c in lights]
