@@ -186,7 +186,7 @@ def figures_command(
     wanted = chosen(names)
     if listed:
         for figure in wanted:
-            click.echo(f"{figure.name:24} {figure.slide}")
+            click.echo(f"{figure.name:26} {figure.slide}")
         return 0
     if folder is None:
         raise UserError("figures: expected -o DIR, the folder to write to (or --list)")

@@ -104,3 +104,14 @@ def test_row_shows_pictures_pixel_for_pixel(tmp_path):
     panels.row(tmp_path / "row.png", [panels.Panel("", pixels), panels.Panel("", pixels, zoom=(0, 0, 4))], scale=3)
     shown = np.asarray(Image.open(tmp_path / "row.png").convert("L"))
     np.testing.assert_array_equal(shown[34:94, 16:106], np.kron(255 * (pixels[..., 0] > 0), np.ones((3, 3))))
+
+
+@pytest.mark.parametrize("name", ["ladder_area_brdf", "glossy_lobes", "mc_lobe_densities"])  # those without a render
+def test_a_figure_is_a_small_png_with_a_background_and_lines(name, tmp_path):
+    from PIL import Image
+
+    path = FIGURES[name].write(tmp_path)
+    assert path.stat().st_size <= registry.MOST_BYTES
+    shown = np.asarray(Image.open(path).convert("RGB"))
+    white = (shown == 255).all(axis=-1).mean()
+    assert 0.5 < white < 0.99

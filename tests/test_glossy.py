@@ -40,7 +40,7 @@ def view(cosine):
     return np.array([-math.sqrt(1.0 - cosine**2), 0.0, cosine])
 
 
-def render(shade, n, V, sky=(0.0, 0.0), light=0.0):
+def render(shade, n, V, sky=(0.0, 0.0), light=0.0, others=()):
     """A plate seen along -V under L(w) = sky[0] + sky[1] w . N and a triangle light of that radiance."""
     plate = d.Rectangle(to_world=moved(0, 0, 0, 0.01, 0.01, 1), front=d.Phong(np.zeros(3), K_S, n))
     corners = TRIANGLE if light else TRIANGLE - np.array([0.0, 0.0, 3.0])  # a dark light must not hide the sky
@@ -50,7 +50,9 @@ def render(shade, n, V, sky=(0.0, 0.0), light=0.0):
     gradient = np.tile(np.array([0.0, 0.0, sky[1]]), (3, 1))
     scene = raylab.Scene(
         d.SceneDescription(
-            camera=camera, shapes=(plate, lamp), environment=d.GradientEnvironment(np.full(3, sky[0]), gradient)
+            camera=camera,
+            shapes=(plate, lamp, *others),
+            environment=d.GradientEnvironment(np.full(3, sky[0]), gradient),
         )
     )
     return raylab.render(scene, shade, sampler="independent", spp=SAMPLES, seed=1, threads=1)
@@ -163,6 +165,12 @@ def test_phong_under_a_constant_sky(n, cosine):
 @compiled
 def test_phong_under_a_gradient_sky():  # F4
     check(render("glossy_phong", 10, view(1.0), (1.1, 0.5)), phong.gradient_sky(10, 1.1, 0.5))
+
+
+@compiled
+def test_a_lobe_among_other_kinds_of_surface():
+    mirror = d.Rectangle(to_world=moved(0, 0, -4, 1, 1, 1), front=d.Conductor())
+    check(render("glossy_phong", 10, view(1.0), (1.1, 0.5), others=(mirror,)), phong.gradient_sky(10, 1.1, 0.5))
 
 
 @compiled

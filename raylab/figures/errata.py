@@ -185,7 +185,7 @@ def errata_without_view(path: Path) -> None:
 
 @figure(
     "errata_captions",
-    "Diffuse surface in env. by Monte Carlo (integral)",
+    "Arbitrary surface in env. by Monte Carlo",
     """The last two boxes of code, named by what their code calls. On the slide the captions are the other way round:
     the box above “sampling by BRDF” calls environment.sample. 16 samples of a sky with a small sun.""",
 )
