@@ -7,6 +7,7 @@ what a scene does not need (a lens, a shutter) it does not draw, so no dimension
 `independent` numbers are unrelated. `stratified` points fall one into each cell of a grid over the unit square, for
 each pair of dimensions. `latin` numbers (a Latin hypercube) fall one into each of n intervals, for each dimension, in
 an order of its own. `sobol` points are an Owen-scrambled Sobol' sequence, good at each prefix of 2^k points.
+`centre` is not random: every point is the middle of its square.
 The points of all but the first depend on one another within a stream, so an honest standard error compares several
 streams, which are scrambled independently (randomised quasi-Monte Carlo).
 """
