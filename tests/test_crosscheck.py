@@ -13,6 +13,8 @@ from scipy import stats
 from scipy.ndimage import maximum_filter
 
 import raylab
+from raylab.io.image_file import write_exr
+from raylab.io.indices import DIELECTRICS, METALS
 
 pytestmark = pytest.mark.crosscheck
 SCENES = Path(__file__).parents[1] / "reference_scenes"
@@ -107,6 +109,53 @@ SKY = """
 </scene>
 """
 
+# Balls of gold, glass and mirror, a block of water; {floor} stands below them.
+SMOOTH = """
+<scene version="3.0.0">
+    {integrator}
+    <sensor type="perspective">
+        <float name="fov" value="38"/>
+        <transform name="to_world"><lookat origin="1,-5,2.5" target="0.1,0,0.6" up="0,0,1"/></transform>
+        <film type="hdrfilm">
+            <integer name="width" value="$width"/><integer name="height" value="$height"/><rfilter type="box"/>
+        </film>
+        <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>
+    </sensor>
+    {floor}
+    <shape type="sphere">
+        <point name="center" x="-1.3" y="0" z="0.8"/><float name="radius" value="0.8"/>
+        <bsdf type="dielectric">
+            <rgb name="specular_transmittance" value="0.9,1,0.8"/><rgb name="specular_reflectance" value="0.8,0.9,1"/>
+        </bsdf>
+    </shape>
+    <shape type="sphere">
+        <point name="center" x="0.5" y="0.6" z="0.8"/><float name="radius" value="0.8"/>
+        <bsdf type="conductor"><string name="material" value="Au"/></bsdf>
+    </shape>
+    <shape type="cube">
+        <transform name="to_world">
+            <scale value="0.5"/><rotate z="1" angle="30"/><translate x="1.2" y="-1.1" z="0.52"/>
+        </transform>
+        <bsdf type="dielectric"><string name="int_ior" value="water"/><float name="ext_ior" value="1"/></bsdf>
+    </shape>
+    <shape type="rectangle">
+        <transform name="to_world">
+            <rotate x="1" angle="90"/><rotate z="1" angle="20"/><translate x="0.3" y="2.5" z="1"/>
+        </transform>
+        <bsdf type="twosided"><bsdf type="conductor"><float name="specular_reflectance" value="0.8"/></bsdf></bsdf>
+    </shape>
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale value="0.7"/><rotate x="1" angle="150"/><translate x="-1" y="-1" z="3"/>
+        </transform>
+        <emitter type="area"><rgb name="radiance" value="4,3,2"/></emitter>
+    </shape>
+    <emitter type="envmap"><string name="filename" value="{sky}"/></emitter>
+</scene>
+"""
+FLOOR = """<shape type="rectangle"><transform name="to_world"><scale value="6"/></transform>
+    {inside}</shape>"""
+
 
 @pytest.fixture(scope="module")
 def mitsuba():
@@ -179,3 +228,37 @@ def test_thin_lens(mitsuba, tmp_path):
     path = tmp_path / "lens.xml"
     path.write_text(text)
     agree(mitsuba, path, spp=256)
+
+
+def smooth(folder: Path, integrator: str, inside: str) -> Path:
+    """The scene SMOOTH under a dim sky, with a floor; its file."""
+    write_exr(folder / "sky.exr", {"": np.random.default_rng(1).random((8, 16, 3))}, {})
+    path = folder / "smooth.xml"
+    path.write_text(SMOOTH.format(integrator=integrator, sky=folder / "sky.exr", floor=FLOOR.format(inside=inside)))
+    return path
+
+
+@pytest.mark.parametrize("hide", ["false", "true"])
+def test_mirrors_and_glass_in_direct_light(mitsuba, tmp_path, hide):
+    integrator = f'<integrator type="direct"><boolean name="hide_emitters" value="{hide}"/></integrator>'
+    agree(mitsuba, smooth(tmp_path, integrator, '<bsdf type="diffuse"/>'), spp=256)
+
+
+@pytest.mark.parametrize("max_depth", [3, 8])
+def test_basic_ray_tracing_is_exact_where_all_else_shines(mitsuba, tmp_path, max_depth):
+    """Slide "Basic ray tracing": a path tracer with the same depth, where no surface but mirrors and glass reflects."""
+    integrator = f"""<integrator type="path"><integer name="max_depth" value="{max_depth}"/>
+        <integer name="rr_depth" value="1000"/></integrator>"""
+    floor = '<emitter type="area"><rgb name="radiance" value="0.2,0.4,0.6"/></emitter>'
+    agree(mitsuba, smooth(tmp_path, integrator, floor), spp=256, shade="basic")
+
+
+def test_every_named_index_is_mitsubas(mitsuba):
+    """To the six digits that the table has."""
+    for name, (eta, k) in METALS.items():
+        theirs = mitsuba.traverse(mitsuba.load_dict({"type": "conductor", "material": name}))
+        assert np.array(theirs["eta.value"]) == pytest.approx(eta, rel=1e-6, abs=1e-8), name
+        assert np.array(theirs["k.value"]) == pytest.approx(k, rel=1e-6, abs=1e-8), name
+    for name, index in DIELECTRICS.items():
+        glass = mitsuba.load_dict({"type": "dielectric", "int_ior": name, "ext_ior": 1.0})
+        assert mitsuba.traverse(glass)["eta"] == pytest.approx(index, rel=2**-23), name
