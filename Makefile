@@ -45,4 +45,4 @@ clean:  ## remove what the targets above have made
 
 # The test files that also run without the compiler: the same source in plain Python, at small sizes.
 PLAIN := $(addprefix tests/test_,$(addsuffix .py,twin vec3 record rng samplers sampling fresnel brdf lights environment \
-	quadrics camera materials geometry microfacet rough glossy))
+	quadrics camera materials geometry microfacet rough glossy basic))

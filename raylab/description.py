@@ -283,7 +283,7 @@ class SceneDescription:
     spp: int = 16
     seed: int = 0
     hide_emitters: bool = False
-    max_depth: int = 10  # rays in a row, the eye ray included; only the shade "basic" asks for it
+    max_depth: int = 8  # rays in a row, the eye ray included; only the shade "basic" asks for it
     name: str = "scene"
     path: Path | None = None
     warnings: tuple[str, ...] = ()

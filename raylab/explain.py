@@ -29,6 +29,8 @@ PARTS = {
     "motion": Part("draws a time for each eye ray", "nothing moves"),
 }
 
+RECURSION = "follows up to {} rays in a row, eye ray and shadow ray included; what would come by more is left out"
+
 MODULES = {
     "colour": "spectra, sRGB colours and .png files",
     "OpenImageIO": "image files",
@@ -56,6 +58,7 @@ def explain(scene: Scene, shade: str, sampler: str) -> str:
         + (":" if there else ", which is none of the optional parts."),
         *(f"  + {name}: it {PARTS[name].there}." for name in there),
         *_motion(scene),
+        *([f"  + recursion: it {RECURSION.format(scene.data.max_depth)}."] if shade == "basic" else []),
         "Left out, with no test, no memory and no random number spent on it:",
         *(f"  - {name}: {PARTS[name].absent}." for name in FEATURES if name not in scene.features),
         "Modules not imported:",

@@ -202,6 +202,7 @@ def board() -> Array:
 
 def textures() -> None:
     write_png(HERE / "basic_ray_tracing" / "checks.png", checks(2, (0.50, 0.05, 0.04), (0.85, 0.75, 0.30), 8))
+    write_png(HERE / "mirror_balls" / "checks.png", checks(2, (0.50, 0.05, 0.04), (0.85, 0.75, 0.30), 8))
     write_png(HERE / "still_life" / "board.png", board())
 
 

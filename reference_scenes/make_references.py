@@ -7,7 +7,8 @@ Writes into each folder
 - `reference.npz`: `mean` (h, w, 3) and `standard_error` (h, w, 3) of each pixel, `variance` (h, w, 3) of one
   independent sample of `direct` there, all float32, and `samples`, how many the mean is made of;
 - `truth.json`: `source` in words; `parameters`, with which the scene has the size of the reference; `reference`, the
-  name of the file; and where a closed form gives the whole image, its exact `mean` [r, g, b] and `standard_error`.
+  name of the file; `shade`, where it is not `direct`; and where a closed form gives the whole image, its exact `mean`
+  [r, g, b] and `standard_error`.
 
 A closed form is averaged over each pixel: a smooth one by Gauss-Legendre quadrature, to all digits, one with outlines
 in it at jittered points, whose spread is its standard error. Everything else is rendered: 16 pictures of 256
@@ -35,7 +36,9 @@ import pictures
 Array = npt.NDArray[np.float64]
 Form = Callable[[Array, Array], Array]
 HERE = Path(__file__).parent
-SIZES = {"cornell_box": (96, 96), "soft_shadows": (120, 90), "hdr_sky": (120, 80), "veach_plates": (128, 96)}
+SIZES = {"cornell_box": (96, 96), "soft_shadows": (120, 90), "hdr_sky": (120, 80), "veach_plates": (128, 96),
+         "mirror_balls": (60, 40)}  # fmt: skip
+SHADES = {"mirror_balls": "basic"}  # where it is not `direct`
 PICTURES = 16  # of which the spread is the standard error
 SAMPLES = 256  # of each picture
 SEED = 20_000  # the first picture's, far from the small seeds that tests and studies use
@@ -51,9 +54,9 @@ def size(name: str) -> dict[str, int]:
     return {"width": width, "height": height}
 
 
-def rendered(scene: raylab.Scene) -> tuple[Array, Array, int]:
+def rendered(scene: raylab.Scene, shade: str) -> tuple[Array, Array, int]:
     """Mean and standard error over PICTURES renders with seeds of their own, and the samples of a pixel."""
-    means = [raylab.render(scene, sampler="sobol", spp=SAMPLES, seed=SEED + i).mean for i in range(PICTURES)]
+    means = [raylab.render(scene, shade, sampler="sobol", spp=SAMPLES, seed=SEED + i).mean for i in range(PICTURES)]
     return (*spread(np.stack(means)), PICTURES * SAMPLES)
 
 
@@ -85,17 +88,19 @@ def make(name: str) -> None:
     """Write the reference and the truth of one scene, and say what came out."""
     start, parameters = time.perf_counter(), size(name)
     scene = raylab.load(HERE / name / "scene.xml", parameters)
-    form = pictures.PICTURES.get(name)
+    form, shade = pictures.PICTURES.get(name), SHADES.get(name, "direct")
     if form is None:
-        mean, error, samples = rendered(scene)
+        mean, error, samples = rendered(scene, shade)
     else:
         mean, error, samples = (averaged if parameters else integrated)(scene, form)
-    noisy = raylab.render(scene, sampler="independent", spp=VARIANCE_SAMPLES, seed=SEED)
+    noisy = raylab.render(scene, shade, sampler="independent", spp=VARIANCE_SAMPLES, seed=SEED)
     variance = noisy.standard_error**2 * VARIANCE_SAMPLES
     with replacing(HERE / name / "reference.npz") as path:
         columns = {"mean": mean, "standard_error": error, "variance": variance}
         np.savez_compressed(path, samples=samples, **{k: v.astype(np.float32) for k, v in columns.items()})
     truth: dict[str, object] = {"reference": "reference.npz", "parameters": parameters}
+    if shade != "direct":
+        truth["shade"] = shade
     if form:
         truth["mean"] = [float(v) for v in mean.mean(axis=(0, 1))]
         truth["standard_error"] = [float(v) for v in np.sqrt((error**2).sum(axis=(0, 1))) / error[..., 0].size]

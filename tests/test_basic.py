@@ -155,6 +155,15 @@ def test_glass_slab(max_depth):
         assert np.abs(image[..., 0] / 2 - (1 - R) ** 2 / (1 - R**2)).max() < (R**8).max()
 
 
+def test_a_lamp_shines_on_one_side_only_behind_glass_too():
+    glass = d.Dielectric(1.6, 1.0)
+    slab = d.Rectangle(to_world=moved(0, 0, 0, 300, 300, 1), front=glass, back=glass.inside)
+    for side in (-1, 1):
+        lamp = d.Rectangle(to_world=moved(0, 0, -3, 300, side * 300, side), front=None, radiance=np.ones(3))
+        image = picture(slab, lamp, cam=eye((0.0, -2.0, 2.0), (0.0, 0.0, 0.0), 2))
+        assert np.all(image > 0.1) if side == 1 else np.all(image == 0.0)
+
+
 def ball_light(w, n, eta, max_depth, light):
     """Radiance against w from a glass ball hit at normal n: every meeting with the surface has the same angles.
 

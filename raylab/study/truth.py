@@ -78,6 +78,8 @@ def read(path: Path, scene: Scene) -> Truth | None:
         raise UserError(f'cannot read the truth "{path}": {error}') from None
     if not isinstance(content, dict) or not {"mean", "reference"} & set(content):
         raise UserError(f'"{path}" must be an object with "mean" or "reference"')
+    if content.get("shade", "direct") != "direct":
+        return None  # the picture of one shade, not of all light
     closed, source = "mean" in content, str(content.get("source", ""))
     aspect = scene.description.camera.width / scene.description.camera.height
     if "reference" in content:
