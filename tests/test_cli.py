@@ -205,7 +205,7 @@ def test_ctrl_c_keeps_what_is_done(scene, tmp_path):
 def test_shades_lists_those_that_make_sense(scene, run):
     lines = run("shades", scene).stdout.splitlines()
     by_light = ["area_diffuse", "area", "area_solid_angle", "mis_balance", "mis_power"]
-    assert [line.split()[0] for line in lines] == ["direct", *by_light, "one_light_uniform", "one_light_power"]
+    assert [line.split()[0] for line in lines] == ["direct", "basic", *by_light, "one_light_uniform", "one_light_power"]
 
 
 def test_version_and_help(run):
