@@ -90,6 +90,7 @@ def code() -> dict[str, str]:
         "image sky": machine_code(outdoors(d.ImageEnvironment(image), 4)),
         "glossy": machine_code(room(4, GLOSSY)),
         "mirror": machine_code(room(4, d.Conductor())),
+        "rough metal": machine_code(room(4, d.RoughConductor())),
         "textured": machine_code(room(4, d.Diffuse(d.Bitmap(np.full((2, 2, 3), 0.5))))),
     }
 
@@ -134,6 +135,12 @@ def test_only_an_image_is_looked_up_by_angles(code):
 def test_only_a_lobe_needs_powers(code):
     assert "exp" in calls(code["glossy"])
     assert all("exp" not in calls(code[name]) for name in ("nothing", "lamp", "constant sky", "image sky", "textured"))
+
+
+def test_only_rough_surfaces_have_microfacets(code):
+    assert "raylab10microfacet" in code["rough metal"]
+    assert all("raylab10microfacet" not in code[name] for name in code if name != "rough metal")
+    assert "raylab5rough" not in code["glossy"]
 
 
 def test_only_basic_ray_tracing_recurs(code):

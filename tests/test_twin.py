@@ -107,6 +107,7 @@ def scenes() -> dict[str, tuple[Scene, str, str]]:
         "lens with blades": (through_lens(5), "area", "stratified"),
         "mirrors": (mirrors(), "direct", "independent"),
         "basic": (mirrors(), "basic", "independent"),
+        "rough": (room(4, d.RoughConductor(alpha_u=0.3, alpha_v=0.3)), "direct", "sobol"),
         "texture and sun": (Scene(sun), "direct", "independent"),
     }
 
