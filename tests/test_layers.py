@@ -16,9 +16,8 @@ ORDER = [
     "light_choice", "environment", "materials", "quadrics", "callbacks", "motion", "embree", "surface", "shadow",
     "shade", "beyond", "glossy", "direct", "basic", "camera", "keyframes", "triangles", "geometry", "emitters",
     "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe", "ladders",
-    "closed_forms", "io", "__init__", "slides", "explain", "progress", "study", "figures", "demo", "stats",
-    "trials", "testing",
-    "cli",
+    "closed_forms", "io", "__init__", "slides", "explain", "progress", "stats", "study", "figures", "demo",
+    "trials", "testing", "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
 
@@ -55,6 +54,11 @@ def test_imports_go_one_way(name):
     for other in imported(modules()[name]):
         known = other if other.split("/")[0] in ORDER else "__init__"  # `from raylab import load`
         assert layer(known) <= own, f"{name} imports {other}, which stands below it"
+
+
+def test_statistics_know_of_no_rendering():
+    stats = [path for name, path in modules().items() if name.startswith("stats/")]
+    assert {other.split("/")[0] for path in stats for other in imported(path)} == {"stats"}
 
 
 @pytest.mark.parametrize("name", sorted(modules()))

@@ -15,11 +15,13 @@ from scipy import stats
 import raylab
 from raylab.errors import UserError
 from raylab.image import Image
+from raylab.stats import intervals as st
+from raylab.stats.convergence import fit
+from raylab.stats.efficiency import efficiency_ratio
+from raylab.stats.intervals import Estimate
 from raylab.study import find_truth, measure, plots, study
-from raylab.study import statistics as st
 from raylab.study.look import figure, spread
 from raylab.study.results import COLUMNS
-from raylab.study.statistics import Estimate
 from raylab.study.truth import Truth
 
 SIZE, SPP, REPEATS = 4, [1, 4, 16], 12
@@ -91,7 +93,7 @@ def test_deviations_average_to_the_sample_variance(result):
 def test_slope_of_a_power_law(exponent):
     x = [1.0, 4.0, 16.0, 64.0]
     y = [Estimate(3.0 * a**exponent, 2.7 * a**exponent, 3.3 * a**exponent) for a in x]
-    fitted = st.slope(x, y, repeats=20)
+    fitted = fit(x, y, repeats=20)
     assert fitted is not None
     assert fitted.value == pytest.approx(exponent, abs=1e-12)
     assert fitted.low < exponent < fitted.high
@@ -106,7 +108,7 @@ def test_interval_of_a_slope_covers_the_truth():
         for n in x:
             values = rng.standard_normal((20, 50)) / np.sqrt(n)
             y.append(st.mean_interval(((values - values.mean(axis=0)) ** 2).mean(axis=1) * 20 / 19))
-        fitted = st.slope(x, y, 20)
+        fitted = fit(x, y, 20)
         held += fitted.low <= -1.0 <= fitted.high
     assert held >= interval_of((trials, 0.95))[0]
 
@@ -114,16 +116,16 @@ def test_interval_of_a_slope_covers_the_truth():
 def test_slope_says_when_there_is_no_line():
     x = [1.0, 4.0, 16.0, 64.0]
     y = [Estimate(v, 0.99 * v, 1.01 * v) for v in (1.0, 0.9, 0.2, 0.001)]
-    fitted = st.slope(x, y, repeats=20)
+    fitted = fit(x, y, repeats=20)
     assert "do not lie on a line" in " ".join(fitted.doubts)
-    assert st.slope(x[:1], y[:1], 20) is None
+    assert fit(x[:1], y[:1], 20) is None
 
 
 def test_efficiency_ratio_of_known_costs():
     rng = np.random.default_rng(4)
     drift = np.exp(rng.normal(0.0, 1.0, 40))  # a machine with slow spells, the same for both in each block
     fast, slow = 0.1 * drift, 0.3 * drift
-    ratio = st.efficiency_ratio(Estimate(1.0, 0.9, 1.1), fast, Estimate(2.0, 1.8, 2.2), slow)
+    ratio = efficiency_ratio(Estimate(1.0, 0.9, 1.1), fast, Estimate(2.0, 1.8, 2.2), slow)
     assert ratio.value == pytest.approx(6.0)
     assert ratio.low < 6.0 < ratio.high
     assert ratio.high < 8.0  # times are compared within blocks, so the drift of e^1 cancels

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from raylab.jit import njit
+from raylab.samplers import make
 from raylab.vec3 import Vec3
 
 
@@ -73,3 +74,19 @@ def _filled(fill, given, values, columns):
     out = np.zeros((len(values), columns))
     fill(given, np.ascontiguousarray(values, np.float64), out)
     return out
+
+
+def random_points(name, seed, replicates, n):
+    """Points (replicates, n, 2) of the sampler `name`: independent streams of n samples each."""
+    sampler, out = make(name, seed, n), np.empty((replicates, n, 2))
+    _fill_points(sampler, out)
+    return out
+
+
+@njit
+def _fill_points(sampler, out):
+    for r in range(out.shape[0]):
+        for i in range(out.shape[1]):
+            u, v = sampler.stream(r, 0, i).square()
+            out[r, i, 0] = u
+            out[r, i, 1] = v

@@ -13,6 +13,7 @@ import numpy as np
 
 from raylab.stats.betting import PILOT, Claim, Test
 from raylab.stats.histogram import Array
+from raylab.stats.tails import why_not_trusted
 from raylab.stats.verdict import Verdict
 
 Draw = Callable[[int], Array]
@@ -22,10 +23,13 @@ LARGEST_BLOCK = 1 << 17
 
 def decide(claim: Claim, draw: Draw, cap: int) -> Verdict:
     """Draw in growing blocks until the claim is decided or `cap` observations have been made."""
-    test, start, block = Test(claim), time.perf_counter(), PILOT
+    test, start, block, values = Test(claim), time.perf_counter(), PILOT, np.zeros(0)
     while test.outcome == "INCONCLUSIVE" and test.samples < cap:
-        test.update(draw(min(block, cap - test.samples)))
+        values = draw(min(block, cap - test.samples))
+        test.update(values)
         block = min(max(64, test.samples // 4), LARGEST_BLOCK)
+    if test.outcome == "INCONCLUSIVE" and why_not_trusted(values - claim.truth):
+        test.reason = f"the mean is {why_not_trusted(values - claim.truth)}"
     return test.verdict(time.perf_counter() - start)
 
 

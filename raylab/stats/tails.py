@@ -8,6 +8,8 @@ import numpy as np
 
 from raylab.stats.histogram import Array
 
+FEWEST = 1000  # values of which the largest 1 % are ten, and lie in the tail
+
 
 def tail_index(values: Array, share: float = 0.01) -> tuple[float, float]:
     """Hill's estimate of the tail index a of P(|X| > x) ~ x^-a, and its standard error a / sqrt(k).
@@ -33,6 +35,15 @@ def is_trusted(values: Array) -> bool:
     """
     index, error = tail_index(values)
     return math.isinf(index) or index - error > 2.0
+
+
+def why_not_trusted(values: Array) -> str:
+    """Empty, or the sentence that stands instead of an interval for the mean; fewer than FEWEST values tell nothing."""
+    values = np.asarray(values, np.float64).ravel()
+    if len(values) < FEWEST or is_trusted(values):
+        return ""
+    index, error = tail_index(values)
+    return f"not trusted: the variance looks infinite (tail index {index:.2f} +- {error:.2f}, which must be above 2)"
 
 
 def wilson(hits: int, n: int, confidence: float = 0.95) -> tuple[float, float]:

@@ -13,10 +13,10 @@ from raylab.errors import UserError
 from raylab.image import Image
 from raylab.render import default_threads, render
 from raylab.scene import Scene
+from raylab.stats.intervals import crowding
 from raylab.strategies import BUILT_IN, strategy
 from raylab.study import truth as truths
 from raylab.study.results import Estimator, Row, Study
-from raylab.study.statistics import crowding
 from raylab.study.truth import Truth
 
 LIGHTS = ("area lights", "point lights", "directional lights", "environment")

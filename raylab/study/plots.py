@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from raylab.stats.convergence import Slope
+from raylab.stats.intervals import Estimate
 from raylab.study.look import (
     COLOURS,
     GREY,
@@ -22,7 +24,6 @@ from raylab.study.look import (
     svg,
 )
 from raylab.study.results import Estimator, Level, Study
-from raylab.study.statistics import Estimate, Slope
 from raylab.study.words import readable
 
 PLOTS = ("variance_samples", "error_time", "efficiency")

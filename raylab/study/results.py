@@ -12,8 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from raylab.scene import Scene
-from raylab.study import statistics as st
-from raylab.study.statistics import Estimate, Slope
+from raylab.stats import convergence, efficiency
+from raylab.stats import intervals as st
+from raylab.stats.convergence import Slope
+from raylab.stats.intervals import Estimate
 from raylab.study.truth import Truth
 
 Array = npt.NDArray[np.float64]
@@ -136,12 +138,12 @@ class Study:
     def variance_slope(self, e: Estimator) -> Slope | None:
         """d log variance / d log samples."""
         levels = self.measured[e]
-        return st.slope([v.spp for v in levels], [v.variance for v in levels], self.repeats)
+        return convergence.fit([v.spp for v in levels], [v.variance for v in levels], self.repeats)
 
     def rmse_slope(self, e: Estimator) -> Slope | None:
         """d log RMSE / d log seconds."""
         levels = self.measured[e]
-        return st.slope([v.seconds.value for v in levels], [v.rmse for v in levels], self.repeats)
+        return convergence.fit([v.seconds.value for v in levels], [v.rmse for v in levels], self.repeats)
 
     @property
     def common_level(self) -> int | None:
@@ -155,12 +157,12 @@ class Study:
     def efficiency(self, e: Estimator) -> Estimate:
         """1 / (variance x median time) at the common level, 1/(radiance^2 s)."""
         level = self._at_common(e)
-        return st.efficiency(level.variance, level.timings)
+        return efficiency.efficiency(level.variance, level.timings)
 
     def relative_efficiency(self, e: Estimator) -> Estimate:
         """Efficiency over that of the first estimator, times compared within each block."""
         level, first = self._at_common(e), self._at_common(self.estimators[0])
-        return st.efficiency_ratio(level.variance, level.timings, first.variance, first.timings)
+        return efficiency.efficiency_ratio(level.variance, level.timings, first.variance, first.timings)
 
     def notes(self) -> list[str]:
         """Everything that a reader must know before trusting a number."""

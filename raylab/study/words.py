@@ -7,8 +7,9 @@ import os
 import platform
 from pathlib import Path
 
+from raylab.stats.convergence import Slope
+from raylab.stats.intervals import Estimate
 from raylab.study.look import MINUS
-from raylab.study.statistics import Estimate, Slope
 
 
 def readable(value: float, digits: int = 3) -> str:
@@ -32,6 +33,8 @@ def number(estimate: Estimate) -> str:
     doubt = " ?" if estimate.doubts else ""
     if estimate.value == 0.0 and estimate.doubts:
         return f"below the reference's own error (< {readable(estimate.high, 2)})"
+    if estimate.doubts and math.isinf(estimate.high):
+        return f"{readable(estimate.value)} (interval not trusted)"
     return f"{readable(estimate.value)} ({readable(estimate.low, 2)} to {readable(estimate.high, 2)}){doubt}"
 
 
