@@ -29,9 +29,27 @@ TABLE = (
     Slide("Basic ray tracing", ("raylab.shade.point_light",), "one shadow ray for every point light"),
     Slide("Basic ray traced image", (), "picture"),
     Slide("Discontinuities in basic RT", ("raylab.shade.point_light",), "see reference_scenes/basic_ray_tracing"),
-    Slide("Soft shadows", (), "picture: reference_scenes/soft_shadows"),
-    Slide("Cause of soft shadows (point lights)", ("raylab.shade.point_light",)),
-    Slide("Cause of soft shadows (area lights)", ("raylab.shade.area_diffuse",)),
+    Slide(
+        "Soft shadows",
+        ("raylab.shade.area_diffuse",),
+        scene="soft_shadows",
+        figure="soft_shadow",
+        test="test_closed_form_renders.py::test_area_lights",
+    ),
+    Slide(
+        "Cause of soft shadows (point lights)",
+        ("raylab.shade.point_light",),
+        scene="basic_ray_tracing",
+        figure="hard_shadow",
+        test="test_closed_form_renders.py::test_a_blocker_takes_lights_without_area_away",
+    ),
+    Slide(
+        "Cause of soft shadows (area lights)",
+        ("raylab.shade.area_diffuse",),
+        scene="soft_shadows",
+        figure="soft_shadow_sizes",
+        test="test_closed_form_renders.py::test_variance_of_a_rectangle",
+    ),
     Slide(
         "Glossy reflection",
         ("raylab.brdf.Phong", "raylab.rough.RoughConductor"),
@@ -78,7 +96,14 @@ TABLE = (
         ("raylab.motion.Moving", "raylab.keyframes.matrix_at"),
         test="test_motion_blur.py::test_a_moving_edge_covers_a_pixel_as_the_formula_says",
     ),
-    Slide("Creating soft shadows", ("raylab.lights.RectangleShape", "raylab.samplers.make"), "uniform in square"),
+    Slide(
+        "Creating soft shadows",
+        ("raylab.lights.RectangleShape", "raylab.samplers.make", "raylab.solid_angle.sample_rectangle_angle"),
+        "uniform in square; also soft_shadow_points, area_or_solid_angle in the gallery",
+        scene="soft_shadows",
+        figure="soft_shadow_variance",
+        test="test_samplers.py::test_the_variance_of_a_latin_hypercube",
+    ),
     Slide(
         "Illumination as integration (Lambertian, over the light)",
         (
@@ -218,12 +243,15 @@ TABLE = (
         ("raylab.beyond.mis_balance", "raylab.beyond.mis_power", "raylab.mis.balance", "raylab.mis.power"),
         "by both: multiple importance sampling combines them",
         scene="veach_plates",
+        figure="light_or_brdf",
         test="test_mis.py::test_neither_technique_alone_is_safe_but_both_together_are",
     ),
     Slide(
         "After the last slide (many lights)",
         ("raylab.beyond.one_light_uniform", "raylab.beyond.one_light_power", "raylab.light_choice.alias_table"),
         "one light for all",
+        scene="still_life",
+        figure="many_lights",
         test="test_mis.py::test_variance_of_one_light_of_two",
     ),
 )

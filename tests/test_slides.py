@@ -30,9 +30,6 @@ TO_COME = {
     "Basic ray tracing",
     "Basic ray traced image",
     "Discontinuities in basic RT",
-    "Soft shadows",
-    "Cause of soft shadows (point lights)",
-    "Cause of soft shadows (area lights)",
     "Cause of glossy reflection (smooth surfaces)",
     "Depth of field",
     "Cause of focusing effects (lenses)",
@@ -40,11 +37,8 @@ TO_COME = {
     "Cause of focusing effects (finite aperture)",
     "Motion blur",
     "Cause of motion blur",
-    "Creating soft shadows",
     "Depth of field (eye rays)",
     "Motion blur (time)",
-    "After the last slide (by light or by BRDF?)",
-    "After the last slide (many lights)",
 }
 
 
