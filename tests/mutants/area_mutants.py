@@ -66,7 +66,7 @@ RECTANGLE = [
     one("c6", "pdf per solid angle where one per area is needed", "rectangle, solid angle", "MR",
         "lights:RectangleShape.pdf_solid_angle", " * to_area(x, y)", ""),
     one("c7", "light without a BRDF", "rectangle, any BRDF", "MR", "shade:area", "light.radiance * f_r", "light.radiance"),
-    one("c8", "BRDF evaluated with the arguments of a mirror", "two methods", "MR", "direct:combined",
+    one("c8", "BRDF evaluated with the arguments of a mirror", "two methods", "MR", "direct:by_light",
         "light.radiance * brdf.eval(V, L)", "light.radiance * brdf.eval(V, -L)"),
 ]  # fmt: skip
 
@@ -154,10 +154,9 @@ SHAPES = [
 ]  # fmt: skip
 
 METHODS = [
-    one("c15", "MIS: area measure next to solid angle", "two methods", "MR", "direct:combined",
-        "p_y + brdf.pdf(V, L, N) * to_area", "p_y + brdf.pdf(V, L, N)"),
-    one("c16", "MIS: weights of one side only", "two methods", "MR", "direct:by_brdf", "(to_area / (p_w * to_area + p_y))",
-        "(1.0 / p_w)"),
+    one("c15", "MIS: area measure next to solid angle", "two methods", "MR", "direct:by_light",
+        "brdf.pdf(V, L, N) * jacobian)", "brdf.pdf(V, L, N))"),
+    one("c16", "MIS: weights of one side only", "two methods", "MR", "direct:by_brdf", "balance(p_w, p_light)", "1.0"),
     one("c17", "MIS: BRDF's samples below the horizon kept", "two methods", "=", "direct:by_brdf", " or dot(w, N) <= 0.0", ""),
     one("c18", "MIS: the pdf is off by 0.93", "two methods", "MR", "brdf:Phong.pdf", "return diffuse *", "return 0.93 * diffuse *"),
 ]  # fmt: skip

@@ -28,7 +28,9 @@ def fill(scene, strategy, place, sampler, first, out):
     x = facet_point(p, n, slack, tilt)
     brdf = scene.materials.at(scene.shapes[0, FRONT], n, (0.5, 0.5))
     for i in range(len(out)):
-        value = strategy.shade(x, V, brdf, n, scene, sampler.stream(0, 0, first + i))
+        rng = sampler.stream(0, 0, first + i)
+        scene.motion.set(scene.motion.draw(rng))
+        value = strategy.shade(x, V, brdf, n, scene, rng)
         out[i, 0], out[i, 1], out[i, 2] = value.x, value.y, value.z
 
 
@@ -37,8 +39,11 @@ def scene_of(trial: Trial) -> Scene:
     turned = affine(frame(trial.n).T @ np.diag([0.01, 0.01, 1.0]), (0, 0, 0))
     receiver = d.Rectangle(to_world=turned, front=trial.material)
     return Scene(
-        d.SceneDescription(shapes=(receiver, *trial.shapes), lights=trial.lights, environment=trial.environment)
-    )
+        d.SceneDescription(
+            camera=d.Camera(shutter_open=0.0, shutter_close=1.0), shapes=(receiver, *trial.shapes),
+            lights=trial.lights, environment=trial.environment,
+        )
+    )  # fmt: skip
 
 
 class Draws:

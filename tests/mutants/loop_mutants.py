@@ -302,4 +302,49 @@ LENS = [
     ),
 ]
 
-MUTANTS = [*MEANS, *STRATA, *NUMBERS, *LENS]
+DRAW, TIME = "motion:Moving.draw", "np.float32(rng.number())"
+MOTION = [
+    one(
+        "a104",
+        "time fixed at the opening of the shutter",
+        "moving light",
+        "MR",
+        DRAW,
+        TIME,
+        "np.float32(0.0 * rng.number())",
+        77.5,
+    ),
+    one("a105", "half of the time", "moving light", "MR", DRAW, TIME, "np.float32(0.5 * rng.number())", 31.0),
+    one("a106", "time not uniform: u^2", "moving light", "MR", DRAW, TIME, "np.float32(rng.number() ** 2)", 23.9),
+    one(
+        "a107",
+        "shutter half open before it opens",
+        "moving light",
+        "MR",
+        DRAW,
+        TIME,
+        "np.float32(max(rng.number() - 0.5, 0.0))",
+        81.5,
+    ),
+    one(
+        "a108",
+        "the number of the time again for the light",
+        "moving light",
+        "MR",
+        DRAW,
+        TIME,
+        "np.float32(rng.number())\n        rng.counter.next[0] = 0",
+        34.0,
+    ),
+    one(
+        "c30",
+        "the light does not move",
+        "moving light",
+        "MR",
+        "motion:Moving.set",
+        "self.lights.set(self, time)",
+        "self.lights.set(self, 0.5)",
+    ),
+]
+
+MUTANTS = [*MEANS, *STRATA, *NUMBERS, *LENS, *MOTION]

@@ -39,8 +39,22 @@ class Loop:
 # --- the running mean of `raylab.pixels.receive`: 16 samples of 2 u ---
 
 
+class _Still(NamedTuple):
+    """In place of a scene and its motion."""
+
+    @property
+    def motion(self):
+        return self
+
+    def set(self, time):
+        pass
+
+
 class _Lanes(NamedTuple):
     """In place of a packet of eye rays."""
+
+    def time(self, lane):
+        return 0.0
 
     def o(self, lane):
         return Vec3(0.0, 0.0, 0.0)
@@ -62,7 +76,7 @@ def running_mean() -> Loop:
         for i in range(n):
             accumulator = np.zeros((1, pixels.COLUMNS))
             arguments = (sampler, _Lanes(), 0, 0, View(accumulator), 0, taken[0] + i, 0)
-            pixels.receive(None, None, *arguments, 0, SPP)
+            pixels.receive(_Still(), None, *arguments, 0, SPP)
             out[i] = accumulator[0, pixels.MEAN]
         taken[0] += n
         return out
@@ -183,7 +197,7 @@ def _lens(camera: d.Camera) -> Loop:
 @njit
 def fill_lens(camera, sampler, first, x0, z0, out):
     for i in range(len(out)):
-        o, d, tfar = camera.ray(0, 0, sampler.stream(0, 0, first + i))
+        o, d, _ = camera.ray(0, 0, sampler.stream(0, 0, first + i))
         out[i] = 1.0 if o.x + d.x * ((z0 - o.z) / d.z) < x0 else 0.0
 
 

@@ -1,4 +1,4 @@
-"""Trials: one point under a light, the light that leaves it by a closed form, and a bound that no correct sample passes.
+"""Trials: a point under a light, the light that leaves it by a closed form, and a bound that no correct sample passes.
 
 All quantities are relative: a sample is the mean over the three channels of value / truth, so the truth is 1. Colours
 differ between the channels, the normal is no axis, nothing is a unit square: what is generic hides no mistake.
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from raylab import description as d
-from raylab.closed_forms import irradiance, phong
+from raylab.closed_forms import blur, irradiance, phong
 
 RHO, L = np.array([0.75, 0.5, 0.3]), np.array([3.0, 2.0, 4.0])
 ERROR = 1e-4  # of a truth: lights and receiver stand where float32 puts them
@@ -212,6 +212,16 @@ def inside_ball() -> Trial:
     return Trial("area_diffuse", leaving(math.pi), area / nearest**2 / math.pi, (shape,), N1)
 
 
+def moving() -> Trial:
+    """Slide "Motion blur": a disk light that rises evenly above the point while the shutter is open."""
+    radius, first, last = 1.5, 1.0, 3.0
+    truth = math.pi * blur.moving_disk_light(radius, first, last)
+    places = [affine(np.diag([radius, -radius, -1.0]), (0.0, 0.0, h)) for h in (first, last)]
+    motion = d.Animation(np.array([0.0, 1.0]), np.stack(places))
+    shape = d.Disk(to_world=places[0], motion=motion, radiance=L, front=None)
+    return Trial("area_diffuse", leaving(truth), math.pi * radius**2 / first**2 / truth, (shape,))
+
+
 # --- skies ---
 
 NS, SLOPE, LEVEL = unit(0.48, 0.6, 0.64), np.array([0.36, -0.24, 0.6]), 1.1
@@ -345,6 +355,7 @@ TRIALS: dict[str, Callable[[], Trial]] = {
     "disk": disk,
     "ball": ball,
     "inside a ball": inside_ball,
+    "moving light": moving,
     "sky, uniform": lambda: sky("env_uniform"),
     "sky, cosine": lambda: sky("env_cosine"),
     "sky, brdf": lambda: sky("env_brdf"),
