@@ -21,6 +21,7 @@ from raylab import samplers
 from raylab.embree import LANES, TNEAR, new_packet
 from raylab.errors import UserError
 from raylab.jit import cached_njit, entry_point, njit
+from raylab.motion import own_copy
 from raylab.pixels import radiance, send
 from raylab.render import default_threads
 from raylab.scene import Scene
@@ -37,8 +38,10 @@ HEIGHT = 2.0**-8  # of the scene: how far off the surface the ray starts that fi
 def sample_point(scene, strategy, sampler, o, d, first, values, place):
     """Call shade() at the first hit of o + t d with the streams first, first + 1, ...; `values` (n, 3).
 
-    `place` (2, 3) receives the hit point and its normal, zeros if there is none.
+    `place` (2, 3) receives the hit point and its normal, zeros if there is none. The point stands still, and is found
+    as the shutter opens; what moves around it stands in each call where it is at a time of its own.
     """
+    scene.motion.set(0.0)
     hit = intersect(scene, round32(o), round32(d), TNEAR, math.inf)
     put(place, 0, hit.x.p)
     put(place, 1, hit.N)
@@ -51,7 +54,9 @@ def sample_point(scene, strategy, sampler, o, d, first, values, place):
     brdf = scene.materials.at(material, hit.N, hit.uv)
     V = normalize(-round32(d))
     for i in range(len(values)):
-        put(values, i, strategy.shade(hit.x, V, brdf, hit.N, scene, sampler.stream(0, 0, first + i)))
+        rng = sampler.stream(0, 0, first + i)
+        scene.motion.set(scene.motion.draw(rng))
+        put(values, i, strategy.shade(hit.x, V, brdf, hit.N, scene, rng))
 
 
 def sample_pixel(scene, camera, strategy, sampler, packet, column, row, first, values):
@@ -63,6 +68,7 @@ def sample_pixel(scene, camera, strategy, sampler, packet, column, row, first, v
         for lane in range(last - done):
             rng = sampler.stream(0, 0, first + done + lane)
             sampler.counter.next[0] = drawn
+            scene.motion.set(packet.time(lane))
             light = _radiance(scene, strategy, packet.o(lane), packet.d(lane), packet.hit(lane), rng)
             put(values, done + lane, light)
         done = last
@@ -166,12 +172,12 @@ class Probe:
         return self._point_kernel(seed)
 
     def _common(self, seed: int) -> tuple[Any, Any]:
-        """Strategy, and a function that makes what each thread has of its own: (scene data, sampler)."""
+        """Strategy, and a function that makes what each thread has of its own: (scene data, camera, sampler)."""
         chosen = strategy(self.shade, self.scene)
 
-        def own() -> tuple[Any, Any]:
+        def own() -> tuple[Any, Any, Any]:
             data = self.scene.data._replace(tally=View(np.zeros(TALLIES, np.int64)))
-            return data, samplers.make("independent", seed & ((1 << 63) - 1), 1)
+            return *own_copy(data, self.scene.camera), samplers.make("independent", seed & ((1 << 63) - 1), 1)
 
         return chosen, own
 
@@ -183,7 +189,7 @@ class Probe:
         d = Vec3(*(self.place.direction / np.linalg.norm(self.place.direction)))
 
         def arguments(values: Array, first: int, place: Array) -> tuple[Any, ...]:
-            data, sampler = own()
+            data, _, sampler = own()
             return data, chosen, sampler, o, d, first, View(values), View(place)
 
         kernel = entry_point(_point_kernels[chosen.cached], arguments(np.zeros((0, 3)), 0, np.zeros((2, 3))))
@@ -197,8 +203,7 @@ class Probe:
         chosen, own = self._common(seed)
 
         def arguments(values: Array, first: int) -> tuple[Any, ...]:
-            data, sampler = own()
-            camera = self.scene.camera
+            data, camera, sampler = own()
             return data, camera, chosen, sampler, new_packet(), pixel.column, pixel.row, first, View(values)
 
         kernel = entry_point(_pixel_kernels[chosen.cached], arguments(np.zeros((0, 3)), 0))

@@ -33,6 +33,8 @@ QUICK = {
     "ball_before_sky": ("env_uniform", "env_cosine", "env_brdf", "env_brightness"),
     "glossy_sky": ("glossy_phong", "glossy_jitter", "glossy_normal", "env_brdf"),
     "glossy_gradient": ("glossy_phong", "glossy_jitter", "glossy_normal", "env_brdf"),
+    "rising_light": ("area_diffuse",),
+    "crossing_edge": ("direct",),
     "lens_before_focus": ("direct",),
     "lens_behind_focus": ("direct",),
 }

@@ -7,7 +7,8 @@ partly hidden, some face away; so no mistake hides behind a symmetry or a factor
 
 - `lights`: points, suns, polygons and round lights
 - `skies`: a gradient, an image, a ball before the sky, glossy surfaces
-- `lens`: an edge out of focus, through one pixel
+- `motion`: a light that rises, an edge that crosses a pixel
+- `lens`: a strip out of focus, through one pixel
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from raylab.errors import UserError
 from raylab.trials.lens import through_a_lens
 from raylab.trials.lights import everything, glossy_polygons, points_and_suns, polygons, round_lights
+from raylab.trials.motion import crossing_edge, rising_light
 from raylab.trials.skies import ball_before_sky, glossy_gradient, glossy_sky, gradient_sky, image_sky
 from raylab.trials.trial import Answer, Trial
 
@@ -34,6 +36,8 @@ CATALOGUE: dict[str, Callable[[np.random.Generator], Trial]] = {
     "image_sky": image_sky,
     "glossy_sky": glossy_sky,
     "glossy_gradient": glossy_gradient,
+    "rising_light": rising_light,
+    "crossing_edge": crossing_edge,
     "lens_before_focus": lambda rng: through_a_lens(rng, before=True),
     "lens_behind_focus": lambda rng: through_a_lens(rng, before=False),
 }

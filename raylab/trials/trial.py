@@ -105,7 +105,8 @@ def affine(linear: npt.ArrayLike, offset: npt.ArrayLike) -> Array:
 
 
 def moved(pose: Array, shape: d.Shape) -> d.Shape:
-    return replace(shape, to_world=pose @ shape.to_world)
+    motion = shape.motion and replace(shape.motion, matrices=pose @ shape.motion.matrices)
+    return replace(shape, to_world=pose @ shape.to_world, motion=motion)
 
 
 def moved_point(pose: Array, p: npt.ArrayLike) -> Array:
@@ -136,7 +137,7 @@ def stage(
     pose = random_pose(rng)
     receiver = d.Rectangle(to_world=affine(np.diag([0.05, 0.05, 1.0]), BLACK), front=material)
     described = d.SceneDescription(
-        camera=d.Camera(to_world=pose, width=1, height=1),
+        camera=d.Camera(to_world=pose, width=1, height=1, shutter_open=0.0, shutter_close=1.0),
         shapes=tuple(moved(pose, shape) for shape in (receiver, *shapes)),
         lights=tuple(_moved_light(pose, light) for light in lights),
         environment=sky(pose[:3, :3]) if sky else None,
