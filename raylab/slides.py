@@ -73,27 +73,31 @@ TABLE = (
         figure="roughness",
         test="test_microfacet.py::test_what_is_seen_is_the_projected_area_of_the_visible_facets",
     ),
-    Slide("Depth of field", (), "picture"),
+    Slide("Depth of field", (), "picture", scene="depth_of_field"),
     Slide(
         "Cause of focusing effects (lenses)",
         ("raylab.camera.ThinLens",),
         "all rays of a point of the focus plane meet",
+        scene="depth_of_field",
         test="test_depth_of_field.py::test_all_rays_of_a_film_point_meet_on_the_focus_plane",
     ),
     Slide(
         "Cause of focusing effects (point aperture)",
         ("raylab.camera.Pinhole",),
+        scene="depth_of_field",
         test="test_depth_of_field.py::test_a_point_aperture_is_the_pinhole_bit_for_bit",
     ),
     Slide(
         "Cause of focusing effects (finite aperture)",
         ("raylab.camera.ThinLens", "raylab.camera.DiskAperture"),
+        scene="depth_of_field",
         test="test_depth_of_field.py::test_a_picture_out_of_focus_is_the_closed_form_in_each_pixel",
     ),
-    Slide("Motion blur", (), "picture"),
+    Slide("Motion blur", (), "picture", scene="motion_blur"),
     Slide(
         "Cause of motion blur",
         ("raylab.motion.Moving", "raylab.keyframes.matrix_at"),
+        scene="motion_blur",
         test="test_motion_blur.py::test_a_moving_edge_covers_a_pixel_as_the_formula_says",
     ),
     Slide(
@@ -229,12 +233,14 @@ TABLE = (
     Slide(
         "Depth of field (eye rays)",
         ("raylab.camera.ThinLens", "raylab.camera.PolygonAperture"),
+        scene="depth_of_field",
         test="test_depth_of_field.py::test_depth_of_field_blurs_an_edge_as_the_formula_says",
     ),
     Slide(
         "Motion blur (time)",
         ("raylab.motion.Moving", "raylab.pose.pose_at", "raylab.camera.MovingCamera"),
         "the clock of `scene.motion` is time; strobing: a shutter that opens and closes at once",
+        scene="motion_blur",
         test="test_motion_blur.py::test_moving_lights_of_every_kind_light_as_they_stand",
     ),
     Slide("The Blue Umbrella", (), "picture"),
