@@ -73,7 +73,14 @@ TABLE = (
         figure="roughness",
         test="test_microfacet.py::test_what_is_seen_is_the_projected_area_of_the_visible_facets",
     ),
-    Slide("Depth of field", (), "picture", scene="depth_of_field", figure="depth_of_field"),
+    Slide(
+        "Depth of field",
+        ("raylab.camera.ThinLens",),
+        "picture",
+        scene="depth_of_field",
+        figure="depth_of_field",
+        test="test_depth_of_field.py::test_a_picture_out_of_focus_is_the_closed_form_in_each_pixel",
+    ),
     Slide(
         "Cause of focusing effects (lenses)",
         ("raylab.camera.ThinLens",),
@@ -96,7 +103,14 @@ TABLE = (
         figure="depth_of_field",
         test="test_depth_of_field.py::test_a_picture_out_of_focus_is_the_closed_form_in_each_pixel",
     ),
-    Slide("Motion blur", (), "picture", scene="motion_blur", figure="motion_blur"),
+    Slide(
+        "Motion blur",
+        ("raylab.motion.Moving",),
+        "picture",
+        scene="motion_blur",
+        figure="motion_blur",
+        test="test_motion_blur.py::test_a_frozen_shutter_is_the_static_picture_bit_for_bit",
+    ),
     Slide(
         "Cause of motion blur",
         ("raylab.motion.Moving", "raylab.keyframes.matrix_at"),

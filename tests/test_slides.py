@@ -31,14 +31,6 @@ TO_COME = {
     "Basic ray traced image",
     "Discontinuities in basic RT",
     "Cause of glossy reflection (smooth surfaces)",
-    "Depth of field",
-    "Cause of focusing effects (lenses)",
-    "Cause of focusing effects (point aperture)",
-    "Cause of focusing effects (finite aperture)",
-    "Motion blur",
-    "Cause of motion blur",
-    "Depth of field (eye rays)",
-    "Motion blur (time)",
 }
 
 
