@@ -19,9 +19,13 @@ import numpy.typing as npt
 
 from raylab import trials
 from raylab.errors import UserError
+from raylab.metamorphic import Relation, relate
+from raylab.probe import Probe
+from raylab.scene import Scene
 from raylab.stats.betting import PILOT, Claim, Test
 from raylab.stats.budget import Budget, Share
-from raylab.stats.claims import LARGEST_BLOCK, shrinks_as, uncorrelated, variance_is
+from raylab.stats.claims import LARGEST_BLOCK, shrinks_as, uncorrelated, variance_is, variance_ratio_is
+from raylab.stats.tails import rule_of_three
 from raylab.stats.verdict import Outcome, Verdict
 from raylab.trials import Answer, Trial
 
@@ -29,6 +33,10 @@ Array = npt.NDArray[np.float64]
 Shade = str | Callable[..., Any]
 Draw = Callable[[int], Array]
 CHANNELS = ("red", "green", "blue")
+ROUNDING = (
+    2.0**-10
+)  # relative: float32 moves points by 2^-24 of the scene, and 1/r^2 and cosines by some 100 times that
+FLIPS = 1e-3  # samples that rounding may bring to the other side of an edge or texel: far fewer than that
 CAP = 8  # times what a true claim needs on average
 
 
@@ -98,10 +106,7 @@ class Examiner:
         x, y = made.answer(technique), made.answer(other)
         draw_x = made.probe(shade, self.threads).draws(share.child(1))
         draw_y = made.probe(other, self.threads).draws(share.child(2))
-        claims = [
-            Claim(f"{share.name}, {channel}", 0.0, -y.bound[c], x.bound[c], delta * y.truth[c], 0.0, share.alpha / 3.0)
-            for c, channel in enumerate(CHANNELS)
-        ]
+        claims = _equal_means(share, x.bound, y.bound, delta * y.truth)
         return self.decide(share.name, claims, lambda n: draw_x(n) - draw_y(n))
 
     def variance(
@@ -162,6 +167,79 @@ class Examiner:
         )  # fmt: skip
         return Report(share.name, (found,), 2 * found.samples, time.perf_counter() - start, self.budget.token)
 
+    def more_rays(
+        self, technique: str, shade: Shade | None = None, trial: str | Trial = "polygons", delta: float = 0.01
+    ) -> Report:
+        """The mean of two calls is on average what one call is."""
+        shade = technique if shade is None else shade
+        share, made = self._prepare(f"more rays {technique} {_name(shade)}", trial)
+        one, two = (made.probe(shade, self.threads).draws(share.child(i)) for i in (1, 2))
+        answer = made.answer(technique)
+        claims = _equal_means(share, answer.bound, answer.bound, delta * answer.truth)
+        return self.decide(share.name, claims, lambda n: one(n) - two(2 * n).reshape(n, 2, 3).mean(axis=1))
+
+    def relation(
+        self, relation: str, technique: str, shade: Shade | None = None, trial: str | Trial = "polygons",
+        delta: float = 0.01,
+    ) -> Report:  # fmt: skip
+        """A metamorphic relation (`raylab.metamorphic.RELATIONS`) holds; UserError where it does not apply."""
+        shade = technique if shade is None else shade
+        share, made = self._prepare(f"{relation} {technique} {_name(shade)}", trial)
+        found = relate(relation, made.description, share.child(0))
+        if found is None:
+            raise UserError(f"relation {relation!r} does not apply to trial {made.name!r}")
+        before = made.probe(shade, self.threads)
+        return self.related(share, before, found, made.answer(technique).bound, delta)
+
+    def related(
+        self, share: Share, before: Probe, relation: Relation, bound: Array | None = None, delta: float = 0.01
+    ) -> Report:
+        """A relation for the samples of any probe; one about means alone needs a bound of the samples (3,)."""
+        after = Probe(Scene(relation.description), before.shade, relation.place(before.place), before.threads)
+        if relation.expected in ("bitwise", "rounding"):
+            return self._same_samples(share, before, after, relation)
+        x, y = before.draws(share.child(1)), after.draws(share.child(2))
+        pilot = before.sample(share.child(3), PILOT)
+        if (
+            relation.expected == "distribution"
+        ):  # of samples that are spread alike, all that is cut off alike is as well
+            bound = 4.0 * pilot.max(axis=0) + 1e-300
+        if bound is None:
+            raise UserError(f"relation {relation.name!r} is about means: expected a bound of the samples")
+        top = np.asarray(bound)
+        cut = (lambda v: np.minimum(v, top)) if relation.expected == "distribution" else (lambda v: v)
+        delta_abs = delta * np.maximum(pilot.mean(axis=0), 1e-6 * top)
+        claims = _equal_means(share, top, top, delta_abs)
+        return self.decide(share.name, claims, lambda n: cut(x(n)) - cut(y(n) / relation.factor))
+
+    def _same_samples(self, share: Share, before: Probe, after: Probe, relation: Relation) -> Report:
+        """Sample by sample: all the same, or at most one in a thousand different by more than rounding."""
+        start, seed = time.perf_counter(), share.child(1)
+        taken = 0
+
+        def differs(n: int) -> Array:
+            nonlocal taken
+            x = before.sample(seed, n, taken) * relation.factor
+            y = after.sample(seed, n, taken)
+            taken += n
+            allowed = 0.0
+            if relation.expected == "rounding":
+                allowed = ROUNDING * np.maximum(np.abs(x), np.nanmean(np.abs(x), axis=0) + 1e-300)
+            same = (np.abs(y - x) <= allowed) | (np.isnan(x) & np.isnan(y))
+            return np.where(same.all(axis=1), 0.0, 1.0)
+
+        if relation.expected == "rounding":
+            claim = Claim(share.name, 0.5 * FLIPS, 0.0, 1.0, 9.5 * FLIPS, 0.5 * FLIPS, share.alpha)
+            return self.decide(share.name, [claim], lambda n: differs(n)[:, None])
+        wrong = float(differs(1 << 12).mean())
+        unseen = rule_of_three(1 << 12, 1.0 - 1e-3)
+        seconds = time.perf_counter() - start
+        verdict = Verdict(
+            share.name, "FAIL" if wrong else "PASS", wrong, (0.0, max(wrong, unseen)), 0.0, 1 << 12, unseen, 0.0, 1e-3,
+            seconds, f"{100 * wrong:.3g} % of the samples changed, expected none" if wrong else "",
+        )  # fmt: skip
+        return Report(share.name, (verdict,), 2 << 12, seconds, self.budget.token)
+
     def decide(self, name: str, claims: Sequence[Claim], draw: Draw) -> Report:
         """Decide a claim for each column of what `draw(n) -> (n, k)` gives, all of them from the same samples.
 
@@ -193,9 +271,15 @@ class Examiner:
         return share, trials.make(trial, share.child(0)) if isinstance(trial, str) else trial
 
 
-def _same_variance(name: str, x: Draw, y: Draw, bound: float, tolerance: float, alpha: float) -> Verdict:
-    from raylab.stats.claims import variance_ratio_is
+def _equal_means(share: Share, high_x: Array, high_y: Array, delta: Array) -> list[Claim]:
+    """E X = E Y in each channel, X in [0, high_x] and Y in [0, high_y], claimed of X - Y."""
+    return [
+        Claim(f"{share.name}, {channel}", 0.0, -high_y[c], high_x[c], delta[c], 0.0, share.alpha / 3.0)
+        for c, channel in enumerate(CHANNELS)
+    ]
 
+
+def _same_variance(name: str, x: Draw, y: Draw, bound: float, tolerance: float, alpha: float) -> Verdict:
     return variance_ratio_is(name, x, y, 1.0, high_x=bound, high_y=bound, tolerance=tolerance, alpha=alpha)
 
 
