@@ -131,11 +131,8 @@ def mirror_lobe(brdf, V, L, H):
     v, w = to_local(brdf, V), to_local(brdf, L)
     if v.z <= 0.0 or w.z <= 0.0:
         return 0.0
-    return (
-        0.25
-        * brdf.facets.density(to_local(brdf, H))
-        / (brdf.facets.seen_as_mitsuba(v) * brdf.facets.seen_as_mitsuba(w))
-    )
+    D = brdf.facets.density(to_local(brdf, H))
+    return 0.25 * D / (brdf.facets.seen_as_mitsuba(v) * brdf.facets.seen_as_mitsuba(w))
 
 
 @njit
