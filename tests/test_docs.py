@@ -23,6 +23,15 @@ def test_examples_run(page, tmp_path, monkeypatch):
     assert namespace["image"].mean.max() > 0.0
 
 
+def test_examples_of_the_statistics_run():
+    """Fresh random numbers: a verdict other than the page's has the probability that the page states."""
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/statistics.md").read_text(), re.DOTALL)
+    namespace: dict = {}
+    for block in blocks:
+        exec(compile(block, "docs/statistics.md", "exec"), namespace)
+    assert len(blocks) == 7
+
+
 @pytest.mark.parametrize("page", ["README.md", *sorted(f"docs/{p.name}" for p in ROOT.glob("docs/*.md"))])
 def test_links_lead_somewhere(page):
     text = (ROOT / page).read_text()

@@ -14,12 +14,16 @@ from raylab import description as d
 from raylab import sampling as s
 from raylab.brdf import Phong
 from raylab.jit import njit
+from raylab.light_choice import FewLights, alias_table
 from raylab.microfacet import BECKMANN, GGX, Microfacets, pdf_visible_normal, sample_visible_normal
 from raylab.sky import make_environment
+from raylab.solid_angle import sample_triangle_angle, triangle_angle
+from raylab.stats import Counts
 from raylab.stats.cells import cells_of, integrate
 from raylab.stats.domains import cap, choices, disk, hemisphere, lobe, sphere, square, texels, triangle
-from raylab.stats.sampler_check import check_sampler, first_wrong
+from raylab.stats.sampler_check import ENOUGH, check_sampler, first_wrong
 from raylab.vec3 import Vec3
+from raylab.view import View
 
 AXIS = unit(0.3, -0.5, 0.7)
 A = np.array([*AXIS])
@@ -101,6 +105,25 @@ def sky_pdf(environment, w):
     return environment.pdf(Vec3(0.0, 0.0, 1.0), w)
 
 
+def gradient():
+    radiance, slope = np.array([1.0, 1.2, 0.9]), 0.5 * np.eye(3)
+    environment = make_environment(d.GradientEnvironment(radiance, slope))
+    return directions_and_pdf(sky_sample, environment), density(sky_pdf, environment), sphere(A)
+
+
+def seen_triangle():
+    """(s, t) on a triangle, uniform in solid angle: p = dw / d(s, t) / Omega = |a . e1 x e2| / (r^3 Omega)."""
+    a, e1, e2 = Vec3(-0.3, -0.5, 0.6), Vec3(1.2, 0.4, 0.5), Vec3(0.4, 1.3, 0.1)
+    corner, edges = np.array([*a]), np.array([[*e1], [*e2]])
+    volume = abs(np.linalg.det([corner, *edges]))
+    omega = triangle_angle(a, e1, e2)
+
+    def pdf(x):
+        return volume / np.linalg.norm(corner + x @ edges, axis=1) ** 3 / omega
+
+    return pairs(sample_triangle_angle, a, e1, e2), pdf, triangle()
+
+
 RIGHT = {
     "hemisphere": lambda: about_axis("hemisphere", hemisphere(A)),
     "cosine": lambda: about_axis("cos_hemisphere", hemisphere(A)),
@@ -115,6 +138,8 @@ RIGHT = {
     "mirror-like Phong lobe": lambda: phong(1e7),
     "GGX": lambda: rough(GGX),
     "Beckmann": lambda: rough(BECKMANN),
+    "light by solid angle": lambda: seen_triangle(),
+    "gradient environment": lambda: gradient(),
     "nearest environment": lambda: sky("nearest"),
     "bilinear environment": lambda: sky("bilinear"),
 }
@@ -143,6 +168,29 @@ def test_the_phong_mixture_has_the_density_that_it_claims():
     brdf = Phong(Vec3(0.1, 0.1, 0.1), Vec3(0.4, 0.4, 0.4), 20.0, N)
     sample, pdf = directions_and_pdf(phong_sample, brdf, V, N), density(phong_pdf, brdf, V, N)
     findings = check_sampler(sample, pdf, sphere(), one_to_one=False, phi2=2e-3, integrand=lambda w: pdf(w) * w[:, 2])
+    assert all(f.ok for f in findings), findings
+
+
+@njit
+def choose_all(lights, u, out):
+    for i in range(len(u)):
+        k, q = lights.choose((u[i, 0], u[i, 1]))
+        out[i, 0], out[i, 1] = k, q
+
+
+@pytest.mark.parametrize("power", [[1.0, 5.0, 0.5, 3.5], [1.0] * 7, [*np.arange(200.0)]])
+def test_lights_are_chosen_with_the_probabilities_that_are_returned(power):
+    """The alias table of `one_light_power`; light 0 of the last list is dark and never chosen."""
+    thresholds, aliases, shares = alias_table(power)
+    lights = FewLights(View(thresholds), View(aliases), View(shares))
+    expected = np.array(power) / np.sum(power)
+
+    def sample(u):
+        out = np.empty((len(u), 2))
+        choose_all(lights, u, out)
+        return out[:, 0], out[:, 1]
+
+    findings = check_sampler(sample, lambda k: expected[k[:, 0].astype(int)], choices(len(power)), phi2=2e-3)
     assert all(f.ok for f in findings), findings
 
 
@@ -402,3 +450,19 @@ def test_cells_are_about_equally_probable():
     assert len(cells.p) == 128
     assert cells.p.sum() == pytest.approx(1.0, abs=1e-12)
     assert cells.p.max() < 2.0 * cells.p.min()
+
+
+@pytest.mark.parametrize("shape", ["wave", "cell", "noise"])
+def test_the_evidence_sees_what_it_is_said_to_see(shape):
+    """At N phi^2 = ENOUGH at least 99 of 100 alternatives are refuted, however the difference is spread."""
+    cells, phi2, runs, rng = 128, 2e-3, 300, np.random.default_rng()
+    p = np.full(cells, 1.0 / cells)
+    off = {"wave": np.cos(np.arange(cells) * 2 * PI / cells), "cell": np.eye(cells)[0], "noise": rng.normal(size=cells)}
+    e = off[shape] - off[shape].mean()
+    q = p * (1.0 + e * math.sqrt(phi2 / (p * e * e).sum()))
+    missed = 0
+    for _ in range(runs):
+        test = Counts(p)
+        test.n[:cells] = rng.multinomial(int(ENOUGH / phi2), q)
+        missed += test.log_evidence() < -math.log(3.3e-9 / 2)
+    assert missed <= binom.isf(1e-6, runs, 0.01)

@@ -27,7 +27,7 @@ STEPS = (2.0**-16, 2.0**-20, 2.0**-24)  # of the differences; a kink of the map 
 FEW = 400  # chosen random numbers
 ODD = 3  # wrong places that are no accident
 NOISE = 64 * 2.0**-53  # relative rounding of a pdf of a few dozen operations
-ENOUGH = 250.0  # N phi^2 at which the evidence speaks with probability 0.999 over 128 cells (docs/statistics.md)
+ENOUGH = 350.0  # N phi^2 at which the evidence over 128 cells speaks with probability 0.99 or more: measured
 SAME = 2.0**-50  # coordinates that differ by less are the same
 
 
