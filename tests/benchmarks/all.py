@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 
+import blur
 import left_out
 import million
 import startup
@@ -11,7 +12,7 @@ import throughput
 
 
 def main() -> None:
-    for benchmark in (startup, million, throughput, left_out):
+    for benchmark in (startup, million, throughput, left_out, blur):
         print(f"\n{benchmark.__name__}: {(benchmark.__doc__ or '').splitlines()[0]}", flush=True)
         benchmark.main()
     if importlib.util.find_spec("mitsuba") is None:
