@@ -12,13 +12,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from raylab import trials
 from raylab.errors import UserError
+from raylab.estimator_check import CALLS, KINDS, check
 from raylab.metamorphic import Relation, relate
 from raylab.probe import Probe
 from raylab.scene import Scene
@@ -27,6 +28,7 @@ from raylab.stats.budget import Budget, Share
 from raylab.stats.claims import LARGEST_BLOCK, shrinks_as, uncorrelated, variance_is, variance_ratio_is
 from raylab.stats.tails import rule_of_three
 from raylab.stats.verdict import Outcome, Verdict
+from raylab.strategies import BUILT_IN
 from raylab.trials import Answer, Trial
 
 Array = npt.NDArray[np.float64]
@@ -49,13 +51,15 @@ class Report:
     samples: int
     seconds: float
     token: str
-    reason: str = ""
+    findings: tuple[str, ...] = ()  # what is wrong beyond the verdicts, in words
 
     @property
     def outcome(self) -> Outcome:
-        """The worst of the verdicts: FAIL before INCONCLUSIVE before PASS."""
+        """FAIL if anything was found; else the worst of the verdicts: FAIL before INCONCLUSIVE before PASS."""
         outcomes = {verdict.outcome for verdict in self.verdicts}
-        return next(o for o in ("FAIL", "INCONCLUSIVE", "PASS") if o in outcomes)  # type: ignore[return-value]
+        if self.findings or "FAIL" in outcomes:
+            return "FAIL"
+        return "INCONCLUSIVE" if "INCONCLUSIVE" in outcomes else "PASS"
 
     @property
     def detectable(self) -> float:
@@ -65,8 +69,7 @@ class Report:
 
     def __str__(self) -> str:
         lines = [f"{self.outcome}  {self.name}: {self.samples} samples, {self.seconds:.2g} s, replay {self.token}"]
-        lines += [f"  {self.reason}"] if self.reason else []
-        return "\n".join(lines + [f"  {verdict}" for verdict in self.verdicts])
+        return "\n".join(lines + [f"  {line}" for line in (*self.findings, *self.verdicts)])
 
 
 @dataclass
@@ -75,6 +78,23 @@ class Examiner:
 
     budget: Budget = field(default_factory=Budget)
     threads: int = 0
+    prefix: str = ""  # of the names of the tests
+
+    CLAIMS: ClassVar[tuple[str, ...]] = (
+        "unbiased", "same_mean", "variance", "shrinks", "independent", "more_rays", "relation", "well_behaved",
+    )  # fmt: skip
+
+    def well_behaved(
+        self, technique: str, shade: Shade | None = None, trial: str | Trial = "polygons", seconds: float = 20.0
+    ) -> Report:
+        """No NaN, no wrong type or shape, nothing negative or too large, no state, no other random generator, and an
+        end within `seconds`; see `raylab.estimator_check`."""
+        if not isinstance(trial, str):
+            raise UserError("expected the name of a trial: the estimator runs in another process")
+        function = BUILT_IN[technique][0] if shade is None or isinstance(shade, str) else shade
+        share, start = self.budget.test(f"{self.prefix}well behaved {technique} {_name(function)} {trial}"), time.time()
+        found = check(function, technique, trial, seed=share.child(0), seconds=seconds)
+        return Report(share.name, (), CALLS, time.time() - start, self.budget.token, tuple(str(f) for f in found))
 
     def unbiased(
         self, technique: str, shade: Shade | None = None, trial: str | Trial = "polygons", delta: float = 0.01
@@ -246,18 +266,21 @@ class Examiner:
         A value that is not a finite number decides against; so does one outside its range.
         """
         start, tests = time.perf_counter(), [Test(claim) for claim in claims]
+        findings: list[str] = []
         values = draw(PILOT)
         caps = [self._cap(claim, values[:, c]) for c, claim in enumerate(claims)]
         while True:
             for c, test in enumerate(tests):
                 test.update(values[:, c])
+                findings += _named(test.claim, values[:, c])
             taken = tests[0].samples if len(tests) == 1 else max(test.samples for test in tests)
             open_ = [t.outcome == "INCONCLUSIVE" and t.samples < cap for t, cap in zip(tests, caps, strict=True)]
             if not any(open_) or any(t.outcome == "FAIL" for t in tests):
                 break
             values = draw(min(max(64, taken // 4), LARGEST_BLOCK))
         seconds = time.perf_counter() - start
-        return Report(name, tuple(test.verdict(seconds) for test in tests), taken, seconds, self.budget.token)
+        verdicts = tuple(test.verdict(seconds) for test in tests)
+        return Report(name, verdicts, taken, seconds, self.budget.token, tuple(findings))
 
     @staticmethod
     def _cap(claim: Claim, pilot: Array) -> int:
@@ -267,8 +290,17 @@ class Examiner:
         return int(CAP * needed)
 
     def _prepare(self, what: str, trial: str | Trial) -> tuple[Share, Trial]:
-        share = self.budget.test(f"{what} {trial if isinstance(trial, str) else trial.name}")
+        share = self.budget.test(f"{self.prefix}{what} {trial if isinstance(trial, str) else trial.name}")
         return share, trials.make(trial, share.child(0)) if isinstance(trial, str) else trial
+
+
+def _named(claim: Claim, values: Array) -> list[str]:
+    """The first value that no correct estimator gives, as what it is."""
+    wrong = values[~((values >= claim.low) & (values <= claim.high))]
+    if not len(wrong):
+        return []
+    kind = "nan" if not np.isfinite(wrong[0]) else "negative" if claim.low == 0.0 and wrong[0] < 0.0 else "bound"
+    return [f"{claim.name}: {KINDS[kind]}: {wrong[0]:.6g}, expected [{claim.low:.6g}, {claim.high:.6g}]"]
 
 
 def _equal_means(share: Share, high_x: Array, high_y: Array, delta: Array) -> list[Claim]:
