@@ -27,7 +27,7 @@ from raylab.view import View
 Findings = list[tuple[str, str]]
 
 
-class GlobalRandom(Exception):
+class GlobalRandomError(Exception):
     """Somebody asked a random generator that is not the one passed in."""
 
 
@@ -36,7 +36,7 @@ def forbid_global_random() -> None:
 
     def refuse(name: str) -> Callable[..., Any]:
         def refused(*arguments: Any, **more: Any) -> Any:
-            raise GlobalRandom(name)
+            raise GlobalRandomError(name)
 
         return refused
 
@@ -121,7 +121,7 @@ def watch(shade: Callable[..., Any], trial: Any, technique: str, seed: int) -> F
     for number in [*range(CALLS // 2), *range(CALLS // 2)]:  # the same numbers twice: the same values are due
         try:
             values, wrong = components(watched.call(number))
-        except GlobalRandom as error:
+        except GlobalRandomError as error:
             return [*found.items(), ("global random", f"{error}() was called")]
         except Exception as error:
             return [*found.items(), ("error", f"{type(error).__name__}: {error}")]
