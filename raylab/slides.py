@@ -26,9 +26,30 @@ NOT_YET = "not in this version"
 
 TABLE = (
     Slide("Advanced Ray Tracing", (), "title slide"),
-    Slide("Basic ray tracing", ("raylab.shade.point_light",), "one shadow ray for every point light"),
-    Slide("Basic ray traced image", (), "picture"),
-    Slide("Discontinuities in basic RT", ("raylab.shade.point_light",), "see reference_scenes/basic_ray_tracing"),
+    Slide(
+        "Basic ray tracing",
+        ("raylab.basic.basic", "raylab.shade.point_light", "raylab.fresnel.dielectric"),
+        "the recursion is raylab.basic.radiance",
+        scene="mirror_balls",
+        figure="basic_depth",
+        test="test_basic.py::test_one_shadow_ray_for_every_point_light",
+    ),
+    Slide(
+        "Basic ray traced image",
+        ("raylab.basic.basic", "raylab.samplers.Centre"),
+        "one ray through the centre of each pixel",
+        scene="mirror_balls",
+        figure="basic_image",
+        test="test_basic.py::test_glass_ball_turns_the_world_upside_down",
+    ),
+    Slide(
+        "Discontinuities in basic RT",
+        ("raylab.basic.basic",),
+        "five figures: each discontinuity beside its cure",
+        scene="mirror_balls",
+        figure="discontinuity_edges",
+        test="test_basic.py::test_an_area_light_is_a_point_light_in_its_middle",
+    ),
     Slide(
         "Soft shadows",
         ("raylab.shade.area_diffuse",),
@@ -62,7 +83,8 @@ TABLE = (
         "Cause of glossy reflection (smooth surfaces)",
         ("raylab.smooth.Conductor",),
         "one direction in, one out",
-        scene="basic_ray_tracing",
+        scene="mirror_balls",
+        figure="discontinuity_mirrors",
         test="test_rough.py::test_a_nearly_smooth_surface_reflects_like_a_mirror",
     ),
     Slide(

@@ -26,12 +26,7 @@ LECTURE = {
 # Slides without scene, figure or test, each for a reason; everything else must have all of them.
 PICTURES_ONLY = {"Advanced Ray Tracing", "The Blue Umbrella"}
 # Rows whose parts are still to come. This list only shrinks.
-TO_COME = {
-    "Basic ray tracing",
-    "Basic ray traced image",
-    "Discontinuities in basic RT",
-    "Cause of glossy reflection (smooth surfaces)",
-}
+TO_COME: set[str] = set()
 
 
 def resolve(name: str):
