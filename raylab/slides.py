@@ -45,7 +45,7 @@ TABLE = (
     Slide(
         "Discontinuities in basic RT",
         ("raylab.basic.basic",),
-        "five figures: each discontinuity beside its cure",
+        "five figures: each discontinuity beside its cure; without mirrors: reference_scenes/basic_ray_tracing",
         scene="mirror_balls",
         figure="discontinuity_edges",
         test="test_basic.py::test_an_area_light_is_a_point_light_in_its_middle",

@@ -165,7 +165,7 @@ def discontinuity_focus(path: Path) -> None:
     pair(
         path,
         panels.Panel("a point aperture", panels.picture(sharp, "basic", spp=16, seed=1).mean, "perfect focus"),
-        panels.Panel("a lens", panels.picture(lens, "basic", spp=64, seed=1).mean, "in focus at the mirror only"),
+        panels.Panel("a lens", panels.picture(lens, "basic", spp=64, seed=1).mean, "sharp at the depth of the mirror"),
     )
 
 
