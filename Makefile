@@ -3,7 +3,7 @@ PYTHON ?= python3.11
 BIN := .venv/bin
 STAMP := .venv/.installed
 
-.PHONY: demo figures test lint crosscheck bench docs clean
+.PHONY: demo figures test lint crosscheck certify bench docs clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -32,6 +32,9 @@ lint: $(STAMP)  ## ruff and mypy
 crosscheck: $(STAMP)  ## compare with Mitsuba 3, pixel by pixel (installs it)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[crosscheck]"
 	$(BIN)/python -m pytest -m crosscheck
+
+certify: $(STAMP)  ## false alarms, power and planted mistakes of the tests: docs/certificate.md (goes on where it was stopped)
+	PYTHONPATH=tests $(BIN)/python -m mutants.certify
 
 bench: $(STAMP)  ## measure the numbers of docs/performance.md on this machine
 	$(BIN)/python tests/benchmarks/all.py

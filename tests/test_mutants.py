@@ -12,9 +12,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from mutants import alarms, certificate
 from mutants.corpus import ALL, BY_NAME, EQUIVALENT
 from mutants.patch import Edit, edited, sources, span
+from scipy import stats
 
 HERE = Path(__file__).parent
 KILLED = (  # by mean, range, variance, Jacobian and counts, correlation
@@ -61,6 +64,30 @@ def test_the_code_as_it_is_passes(results, trial):
 @pytest.mark.parametrize("mutant", ALL, ids=lambda m: m.name)
 def test_every_mutant_still_fits_the_code(mutant):
     assert sources(mutant.edits)
+
+
+def test_the_certificate_says_what_was_run(results, tmp_path):
+    path = certificate.write(tmp_path, {"mutants": list(results.values())})
+    text = path.read_text()
+    assert f"Equivalent mutants: {len(EQUIVALENT)} run, 0 complained about" in text
+    assert f"killed {len(KILLED)} of {len(KILLED)} that were run" in text
+    assert text.count("not run\n") >= 3  # false alarms, power, the suite
+    assert "a9 | area 1 % too large | | not run" in text
+    assert (tmp_path / "certificate" / "mutants.csv").read_text().count("\n") > len(results)
+
+
+def test_gradings_of_right_estimators_do_not_fail():
+    seen = alarms.verdict(*next(alarms.suite()), np.random.default_rng(), 100_000)
+    assert seen.outcome == "PASS"
+    assert len(list(alarms.suite())) == 34
+
+
+def test_the_certificate_predicts_power():
+    """At the bias that is seen in half of the runs, 60 runs: within the binomial's bounds of 0.2 more or less."""
+    n, bias = 1000, 0.15
+    found = round(60 * alarms.measured(bias, n, 60))
+    p = alarms.predicted(bias, n)
+    assert stats.binom.ppf(5e-7, 60, max(p - 0.25, 0.0)) <= found <= stats.binom.ppf(1 - 5e-7, 60, min(p + 0.25, 1.0))
 
 
 def test_an_edit_that_does_not_fit_is_refused():

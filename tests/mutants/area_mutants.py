@@ -158,7 +158,9 @@ METHODS = [
         "brdf.pdf(V, L, N) * jacobian)", "brdf.pdf(V, L, N))"),
     one("c16", "MIS: weights of one side only", "two methods", "MR", "direct:by_brdf", "balance(p_w, p_light)", "1.0"),
     one("c17", "MIS: BRDF's samples below the horizon kept", "two methods", "=", "direct:by_brdf", " or dot(w, N) <= 0.0", ""),
-    one("c18", "MIS: the pdf is off by 0.93", "two methods", "MR", "brdf:Phong.pdf", "return diffuse *", "return 0.93 * diffuse *"),
+    one("c18", "MIS: the pdf is off by 0.93", "two methods", "MR", "brdf:Phong.pdf",
+        "return diffuse * pdf_cos_hemisphere(N, w) + (1.0 - diffuse) * lobe",
+        "return 0.93 * (diffuse * pdf_cos_hemisphere(N, w) + (1.0 - diffuse) * lobe)"),
 ]  # fmt: skip
 
 EQUIVALENT = [

@@ -30,6 +30,8 @@ from mutants.patch import Mutant, bring_to_life  # noqa: E402
 ALPHA = 3.3e-9
 PLAIN_CAP = {"trial": 8192, "loop": 16384, "map": 32768}  # without the compiler: about a second each
 IN_PYTHON = ("running mean", "unrelated")  # trials that put something of their own in place of a compiled part
+CAP = 1 << 23
+VARIANCES: dict[str, float] = {}  # of the right code by trial, which the parent fills in before it forks
 MAP_CAP = 500_000  # 250 / phi^2 for phi^2 = 5e-4: silence is a PASS there
 THEORY = {True: 4096, False: 200_000}  # independent samples from which the theory's prediction is made
 PATIENCE = 300  # seconds until a mutant "never returns"
@@ -95,10 +97,16 @@ def _trial(name: str, plain: bool, variances: bool) -> Iterator[dict[str, Any]]:
     start = time.perf_counter()
     draws(1)
     compiling = time.perf_counter() - start
-    cap = PLAIN_CAP["trial"] if plain else 1 << 23
+    cap = PLAIN_CAP["trial"] if plain else CAP
     yield _report(name, "M", check_mean(trial, draws, cap), draws, 1.0, trial.high, plain) | {"compiling": compiling}
     if variances and trial.variance is not None:
         yield _report(name, "V", check_variance(trial, draws, cap))
+    if not plain:
+        from mutants.rivals import judge
+
+        found = judge(draws, VARIANCES.get(name), float(np.mean(trial.truth)))
+        spread = float(np.var(draws(THEORY[plain])))
+        yield {"trial": name, "test": "rivals", "outcome": "", "samples": 0, "seconds": 0.0, "variance": spread} | found
 
 
 def _report(
@@ -107,7 +115,7 @@ def _report(
     found = {"trial": name, "test": "R" if "outside" in verdict.reason else kind, "outcome": verdict.outcome,
              "samples": verdict.samples, "seconds": verdict.seconds, "estimate": verdict.estimate,
              "reason": verdict.reason}  # fmt: skip
-    if draws is not None and verdict.outcome == "FAIL" and mean > 0.0:
+    if draws is not None and (verdict.outcome == "FAIL" or not plain) and mean > 0.0:
         found |= _theory(draws(THEORY[plain]), high)
     return found
 

@@ -1,0 +1,279 @@
+"""docs/certificate.md from what has been measured, whole or in part; it says which."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from typing import Any
+
+from mutants.corpus import ALL, BY_NAME, EQUIVALENT
+from mutants.patch import Mutant
+
+BLOCK = 256  # observations in the first block of a test: no decision is sooner
+RIVALS = ("Nori", "Mitsuba", "pbrt", "darts")
+
+
+def best(results: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """For each name the compiled result if it is there (it goes on longer), else the one in plain Python."""
+    chosen: dict[str, dict[str, Any]] = {}
+    for result in sorted(results, key=lambda r: not r.get("plain", False)):
+        chosen[result["name"]] = result
+    return chosen
+
+
+def tests_of(result: dict[str, Any]) -> list[dict[str, Any]]:
+    return [t for t in result["tests"] if t["test"] != "rivals"]
+
+
+def killers(result: dict[str, Any]) -> list[dict[str, Any]]:
+    return [t for t in tests_of(result) if t["outcome"] == "FAIL"]
+
+
+def ratio(test: dict[str, Any]) -> float | None:
+    """Samples over what theory says, which is never less than the first block."""
+    theory = test.get("theory", math.nan)
+    return test["samples"] / max(theory, BLOCK) if math.isfinite(theory) else None
+
+
+def state(mutant: Mutant, result: dict[str, Any] | None) -> str:
+    if result is None:
+        return "not run"
+    if "error" in result:
+        return "error"
+    if killers(result):
+        return "killed"
+    open_ = any(t["outcome"] == "INCONCLUSIVE" for t in tests_of(result))
+    return "undecided in plain Python" if open_ and result.get("plain") else "survives"
+
+
+def write(folder: Path, measured: dict[str, Any]) -> Path:
+    """The report, its table as CSV and its figures; returns the report's path."""
+    pictures = folder / "certificate"
+    pictures.mkdir(parents=True, exist_ok=True)
+    results = best(measured.get("mutants", []))
+    _csv(pictures / "mutants.csv", results)
+    parts = [_head(measured), _alarms(measured), _power(measured, pictures), _suite(measured)]
+    parts += [_mutants(results, pictures), _matrix(results), _table(results)]
+    path = folder / "certificate.md"
+    path.write_text("\n\n".join(part for part in parts if part) + "\n")
+    return path
+
+
+def _head(measured: dict[str, Any]) -> str:
+    return (
+        "# Certificate\n\n"
+        "What the statistical harness has been seen to do, made by `make certify`. Every number is of this run; what\n"
+        "was not run is called so. A FAIL of right code has probability at most 3.3e-9 for each test, by theorem; a\n"
+        "PASS of code that is off by 1 % or more at most 1e-3.\n\n" + measured.get("conditions", "")
+    ).rstrip()
+
+
+def _alarms(measured: dict[str, Any]) -> str:
+    lines = ["## False alarms"]
+    if "measure" in measured:
+        lines += ["", "By change of measure (bets 1 to 5 of 14, whose share of alpha is 0.357 at most):", ""]
+        lines += ["| alpha | measured / alpha | standard error |", "| --- | --- | --- |"]
+        lines += [f"| {alpha} | {rate:.3f} | {error:.3f} |" for alpha, (rate, error) in measured["measure"].items()]
+    counts = measured.get("gradings")
+    if counts:
+        from raylab.stats.tails import rule_of_three
+
+        verdicts = sum(counts.get(o, 0) for o in ("PASS", "FAIL", "INCONCLUSIVE"))
+        fails = counts.get("FAIL", 0)
+        bound = rule_of_three(verdicts) if fails == 0 else math.nan
+        lines += [
+            "",
+            f"By brute force: {counts['gradings']} whole gradings of 34 claims, toy estimators that are right, fresh "
+            f"entropy: {verdicts} verdicts, of them {counts.get('PASS', 0)} PASS, {counts.get('INCONCLUSIVE', 0)} "
+            f"INCONCLUSIVE, {fails} FAIL; gradings with a FAIL: {counts.get('gradings with a FAIL', 0)}. At 95 % "
+            f"confidence fewer than {bound:.3g} of the verdicts, and {rule_of_three(counts['gradings']):.2g} of the "
+            "gradings, are false alarms (the theorem says 3.3e-9 and 1.2e-7).",
+        ]
+    return "\n".join(lines) if len(lines) > 1 else "## False alarms\n\nnot run"
+
+
+def _power(measured: dict[str, Any], pictures: Path) -> str:
+    rows = measured.get("power")
+    if not rows:
+        return "## Power\n\nnot run"
+    _power_figure(rows, pictures / "power.png")
+    worst = max(abs(r[2] - r[3]) for r in rows)
+    table = ["| samples | bias % | predicted | measured |", "| --- | --- | --- | --- |"]
+    table += [f"| {n} | {100 * bias:.2f} | {p:.3f} | {m:.3f} |" for n, bias, p, m in rows]
+    return (
+        "## Power\n\nProbability of FAIL within n samples (uniform distribution, alpha 3.3e-9): predicted from one bet "
+        f"and a normal mean, and measured in {measured.get('repeats', 1000)} repeats each. Largest difference "
+        f"{worst:.3f}.\n\n"
+        "![power](certificate/power.png)\n\n" + "\n".join(table)
+    )
+
+
+def _power_figure(rows: list[Any], path: Path) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import numpy as np
+    from matplotlib import pyplot as plt
+
+    from mutants.alarms import predicted
+
+    figure, axes = plt.subplots(figsize=(5.2, 3.2), dpi=110, layout="constrained")
+    for colour, n in zip(("C0", "C3"), sorted({r[0] for r in rows}), strict=False):
+        own = [r for r in rows if r[0] == n]
+        bias = np.linspace(0.0, 1.1 * own[-1][1], 200)
+        axes.plot(100 * bias, [predicted(b, n) for b in bias], colour, label=f"predicted, {n} samples")
+        axes.plot([100 * r[1] for r in own], [r[3] for r in own], colour, marker="o", ls="none", label=f"measured, {n}")
+    axes.set(xlabel="bias, %", ylabel="probability of FAIL")
+    axes.legend(frameon=False, fontsize=8)
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def _mutants(results: dict[str, Any], pictures: Path) -> str:
+    states = {m.name: state(m, results.get(m.name)) for m in ALL if m not in EQUIVALENT}
+    count = {s: sum(v == s for v in states.values()) for s in set(states.values())}
+    first = [killers(results[n])[0] for n, s in states.items() if s == "killed"]
+    ratios = [r for t in first if (r := ratio(t)) is not None]
+    seconds = [t["seconds"] for t in first]
+    large = [n for n, s in states.items() if s not in ("not run", "error") and _bias(BY_NAME[n], results[n]) >= 1.0]
+    dead = sum(states[n] == "killed" for n in large)
+    tried = sum(s not in ("not run", "error") for s in states.values())
+    plain = sum(results[n].get("plain", False) for n, s in states.items() if s != "not run")
+    fast = sum(s <= 2.0 for s in seconds)
+    lines = [
+        "## Mutants", "",
+        f"{len(states)} mistakes and {len(EQUIVALENT)} equivalent mutants, each a patch of the package "
+        "(`tests/mutants`). "
+        + "; ".join(f"{s}: {n}" for s, n in sorted(count.items())) + ".", "",
+        f"- killed {len(first)} of {tried} that were run; {dead} of {len(large)} with a bias of 1 % or more",
+        f"- {tried - plain} of them compiled, {plain} in plain Python with at most 8192 to 32768 samples",
+    ]  # fmt: skip
+    if ratios:
+        lines += [
+            f"- samples against theory, where the mean or the range decides ({len(ratios)}): median "
+            f"{sorted(ratios)[len(ratios) // 2]:.2f}, worst {max(ratios):.2f} times, {sum(r > 3 for r in ratios)} "
+            "above 3 (theory: the best fixed bet, or the first value out of range, on samples of their own; at least "
+            "one block)",
+            f"- {fast} of {len(first)} within 2 s of sampling, many of them in plain Python",
+        ]
+        _samples_figure(first, pictures / "samples.png")
+        lines += ["", "![samples](certificate/samples.png)"]
+    alarmed = [m.name for m in EQUIVALENT if m.name in results and killers(results[m.name])]
+    ran = [m.name for m in EQUIVALENT if m.name in results]
+    lines += ["", f"Equivalent mutants: {len(ran)} run, {len(alarmed)} complained about {alarmed or ''}".rstrip() + "."]
+    others = [(n, s) for n, s in states.items() if s not in ("killed", "not run")]
+    if others:
+        lines += ["", "Not killed:", ""] + [f"- {n}, {BY_NAME[n].what}: {s}; {_why(results[n])}" for n, s in others]
+    unexpected = [
+        n for n, s in states.items()
+        if s == "killed" and not any(t["test"] in BY_NAME[n].test for t in killers(results[n]))
+    ]  # fmt: skip
+    if unexpected:
+        lines += ["", f"Killed by another test than the one for it: {', '.join(unexpected)}."]
+    return "\n".join(lines)
+
+
+def _why(result: dict[str, Any]) -> str:
+    if "error" in result:
+        return result["error"].strip().splitlines()[-1]
+    biased = [t for t in tests_of(result) if "bias" in t]
+    small = f"its bias is {biased[0]['bias']:.2f} +- {biased[0]['bias_error']:.2f} %; " if biased else ""
+    return small + "; ".join(f"{t['test']} {t['outcome']} after {t['samples']}" for t in tests_of(result))
+
+
+def _bias(mutant: Mutant, result: dict[str, Any] | None) -> float:
+    found = [t["bias"] for t in (result or {}).get("tests", []) if "bias" in t]
+    return abs(found[0] if found else (mutant.bias or 0.0))
+
+
+def _samples_figure(first: list[dict[str, Any]], path: Path) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(5.2, 3.2), dpi=110, layout="constrained")
+    for kind, colour in (("M", "C0"), ("R", "C3")):
+        own = [t for t in first if t["test"] == kind and ratio(t) is not None]
+        if own:
+            name = {"M": "by the mean", "R": "by the range"}[kind]
+            axes.loglog(
+                [max(t["theory"], 1.0) for t in own], [t["samples"] for t in own], "o", ms=4, color=colour, label=name
+            )
+    line = [1.0, 1e6]
+    axes.loglog(line, line, "k-", lw=0.8, label="theory")
+    axes.loglog([1.0, BLOCK, 1e6 / 3], [3.0 * BLOCK, 3.0 * BLOCK, 1e6], "k--", lw=0.8, label="three times theory")
+    axes.set(xlabel="samples that theory says", ylabel="samples taken")
+    axes.legend(frameon=False, fontsize=8)
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def _matrix(results: dict[str, Any]) -> str:
+    rows = []
+    for mutant in ALL:
+        result = results.get(mutant.name)
+        judged = [t for t in (result or {}).get("tests", []) if t["test"] == "rivals"]
+        if judged:
+            rows.append((mutant, result, judged[0]))
+    if not rows:
+        return "## Other projects' settings on the same mutants\n\nnot run"
+
+    def cell(judged: dict[str, Any], name: str) -> str:
+        return {True: "seen", False: "-"}.get(judged.get(name), "not run")
+
+    lines = [
+        "## Other projects' settings on the same mutants", "",
+        "Re-implemented in numpy from their published parameters (`tests/mutants/rivals.py`), on our scenes; their "
+        "chi-square tests of samplers were not run. \"seen\" for an equivalent mutant (=) is a false alarm.", "",
+        f"| mutant | what | raylab | {' | '.join(RIVALS)} |", "| --- " * (3 + len(RIVALS)) + "|",
+    ]  # fmt: skip
+    for mutant, result, judged in rows:
+        ours = "".join(t["test"] for t in killers(result)) or "-"
+        name = f"{mutant.name}{' =' if mutant.test == '=' else ''}"
+        lines.append(f"| {name} | {mutant.what} | {ours} | {' | '.join(cell(judged, r) for r in RIVALS)} |")
+    return "\n".join(lines)
+
+
+def _suite(measured: dict[str, Any]) -> str:
+    suite = measured.get("suite")
+    return f"## A whole correct suite\n\n{suite}" if suite else "## A whole correct suite\n\nnot run"
+
+
+def _table(results: dict[str, Any]) -> str:
+    """Every mutant; the CSV holds the same and more."""
+    lines = ["## Every mutant", "", "`certificate/mutants.csv` has every test of each. R range, M mean, V variance, J "
+             "Jacobian, P counts, C correlation.", "",
+             "| mutant | what | bias % | killed by | samples | theory | s |", "| --- " * 7 + "|"]  # fmt: skip
+    for mutant in ALL:
+        result = results.get(mutant.name)
+        found = killers(result) if result and "error" not in result else []
+        if mutant.test == "=":
+            verdict = "equivalent: " + ("FAIL" if found else "no complaint" if result else "not run")
+            lines.append(f"| {mutant.name} | {mutant.what} | 0 | {verdict} | | | |")
+        elif found:
+            t = found[0]
+            theory = f"{max(t['theory'], BLOCK):.0f}" if "theory" in t else ""
+            bias = f"{t['bias']:.1f}" if "bias" in t and abs(t["bias"]) < 1e4 else ""
+            kinds = "".join(k["test"] for k in found)
+            lines.append(
+                f"| {mutant.name} | {mutant.what} | {bias} | {kinds} | {t['samples']} | {theory} | {t['seconds']:.2f} |"
+            )
+        else:
+            lines.append(f"| {mutant.name} | {mutant.what} | | {state(mutant, result)} | | | |")
+    return "\n".join(lines)
+
+
+def _csv(path: Path, results: dict[str, Any]) -> None:
+    with path.open("w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["mutant", "what", "meant for", "source", "compiled", "trial", "test", "outcome", "samples",
+                       "theory", "bias %", "seconds"])  # fmt: skip
+        for name, result in sorted(results.items()):
+            mutant = BY_NAME.get(name)
+            about = [mutant.what, mutant.test, mutant.source] if mutant else ["the code as it is", "", ""]
+            for t in tests_of(result):
+                numbers = [f"{t[k]:.6g}" if k in t else "" for k in ("theory", "bias")]
+                place = [not result["plain"], t["trial"], t["test"], t["outcome"], t["samples"]]
+                rows.writerow([name, *about, *place, *numbers, f"{t['seconds']:.3f}"])

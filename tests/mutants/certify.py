@@ -1,0 +1,148 @@
+"""`make certify`: false alarms, power, every mutant, and docs/certificate.md.
+
+`python -m mutants.certify` goes on where an earlier run was stopped (Ctrl-C keeps what is finished); `--fresh` begins
+anew, `--report` only writes the report. Results are kept in build/certify.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from mutants import run as runner  # before raylab: its children must import the mutants' raylab, not this one
+from mutants.corpus import BY_NAME
+
+HERE = Path(__file__).resolve().parents[2]
+STATE, DOCS = HERE / "build" / "certify", HERE / "docs"
+GRADINGS, REPEATS, MEASURES = 3000, 1000, 200
+ASSIGNMENT = (  # trial, techniques
+    ("polygons", ("area_diffuse", "area")), ("round_lights", ("area_diffuse",)), ("points_and_suns", ("point_light",)),
+    ("gradient_sky", ("env_uniform", "env_cosine")),
+)  # fmt: skip
+
+
+def results() -> list[dict[str, Any]]:
+    return [json.loads(line) for path in sorted(STATE.glob("*.jsonl")) for line in path.read_text().splitlines()]
+
+
+def mutants(jobs: int) -> None:
+    """All trials of the right code first, whose variances the z-test wants, then every mutant."""
+    trials = sorted({t for m in BY_NAME.values() for t in m.trial.split("; ")})
+    for names in ([f"correct:{trial}" for trial in trials], list(BY_NAME)):
+        done = {r["name"] for r in results() if not r.get("plain") or "plain only" in r}
+        for r in results():
+            for t in r["tests"]:
+                if r["name"].startswith("correct:") and t["test"] == "rivals":
+                    runner.VARIANCES[t["trial"]] = t["variance"]
+        _run([n for n in names if n not in done], jobs)
+
+
+def _run(names: list[str], jobs: int) -> None:
+    start = time.monotonic()
+    with (STATE / "compiled.jsonl").open("a") as file:
+        for k, result in enumerate(runner.run(names, plain=False, jobs=jobs), 1):
+            result["plain only"] = True  # whatever it was run in, it need not be run again
+            file.write(json.dumps(result) + "\n")
+            file.flush()
+            print(f"\r{k}/{len(names)} {result['name']:<24} {time.monotonic() - start:.0f} s ", end="", flush=True)
+    print()
+
+
+def keep(name: str, compute: Callable[[], Any]) -> None:
+    """Compute once; the file says that it has been done."""
+    path = STATE / f"{name}.json"
+    if not path.exists():
+        print(f"{name} ...", flush=True)
+        path.write_text(json.dumps(compute()))
+
+
+def suite() -> str:
+    """Every claim of an assignment about the built-in shades: outcomes, samples, seconds with and without compiling."""
+    from raylab.testing import Examiner
+
+    examiner, reports, start, cpu = Examiner(), [], time.perf_counter(), time.process_time()
+    for trial, techniques in ASSIGNMENT:
+        reports += [examiner.unbiased(technique, trial=trial) for technique in techniques]
+    reports.append(examiner.shrinks("area_diffuse"))
+    reports.append(examiner.independent("area_diffuse"))
+    reports.append(examiner.same_mean("area_diffuse", "area"))
+    seconds, sampling = time.perf_counter() - start, sum(r.seconds for r in reports)
+    busy = time.process_time() - cpu
+    outcomes = ", ".join(f"{r.name} {r.outcome}" for r in reports)
+    return (
+        f"{len(reports)} claims: {outcomes}. {sum(r.samples for r in reports)} samples, {sampling:.1f} s for drawing "
+        f"and deciding, {seconds:.1f} s in all with scenes and kernels ({busy:.1f} s of one processor). Replay "
+        f"{examiner.budget.token}."
+    )
+
+
+def conditions() -> str:
+    import numba
+    import numpy
+
+    load = os.getloadavg()[1]
+    return (
+        f"{os.cpu_count()} processors with {load:.0f} processes at work on average while this was finished; Python "
+        f"{platform.python_version()}, numpy {numpy.__version__}, numba {numba.__version__}."
+    )
+
+
+def measured() -> dict[str, Any]:
+    found: dict[str, Any] = {"mutants": results(), "repeats": REPEATS, "conditions": conditions()}
+    for path in STATE.glob("*.json"):
+        found[path.stem] = json.loads(path.read_text())
+    return found
+
+
+def measurements(jobs: int) -> None:
+    from mutants import alarms
+
+    keep("measure", lambda: {str(alpha): alarms.by_change_of_measure(alpha, MEASURES) for alpha in (1e-6, 3e-9)})
+    keep("power", lambda: alarms.power(REPEATS))
+    keep("suite", suite)
+    gradings(jobs)
+
+
+def gradings(jobs: int) -> None:
+    """Goes on from what has been counted before."""
+    from mutants import alarms
+
+    path = STATE / "gradings.json"
+    total = Counter(json.loads(path.read_text()) if path.exists() else {})
+    for seen in alarms.gradings(GRADINGS - total["gradings"], jobs):
+        total += seen
+        path.write_text(json.dumps(total))
+        print(f"\rgradings {total['gradings']}/{GRADINGS}", end="", flush=True)
+    print()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--report", action="store_true")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    options = parser.parse_args()
+    STATE.mkdir(parents=True, exist_ok=True)
+    if options.fresh:
+        for path in STATE.iterdir():
+            path.unlink()
+    try:
+        if not options.report:
+            mutants(options.jobs)
+            measurements(options.jobs)
+    except KeyboardInterrupt:
+        print("\nstopped; what is finished is kept")
+    from mutants import certificate
+
+    print(certificate.write(DOCS, measured()))
+
+
+if __name__ == "__main__":
+    main()
