@@ -2,7 +2,8 @@
 
 In reading order: `histogram` and `verdict`, `betting` (is a mean what it is said to be?), `multinomial` (do counts
 follow given probabilities?), `claims` (what can be said of an estimator), `tails` (when nothing can be
-said), `budget` (a suite of tests, and how to replay it).
+said), `budget` (a suite of tests, and how to replay it); `domains`, `cells`, `sampler_map` and `sampler_check` (has a
+sampler the density that it claims?); for display `intervals`, `convergence` and `efficiency`.
 """
 
 from raylab.stats.betting import Claim, Test
