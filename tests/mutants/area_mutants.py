@@ -50,6 +50,9 @@ RECTANGLE = [
     one("a17", "normal of the light flipped", "rectangle", "MR", "lights:RectangleShape.sample",
         "facet_point(y, light.n,", "facet_point(y, -light.n,", -100.0),
     one("a18", "receiver's normal not normalised (1.02)", "rectangle", "MR", AREA, "dot(L, N)", "dot(L, N * 1.02)", 1.9),
+    one("a19", "firefly clamp at nine tenths of the largest sample", "rectangle", "M", AREA, "return result",
+        "top = k_d * Vec3(3.0, 2.0, 4.0) * 0.4824\n"
+        "    return Vec3(min(result.x, top.x), min(result.y, top.y), min(result.z, top.z))", -0.6),
     one("a20", "firefly clamp at 1.05 times the mean", "rectangle", "MR", AREA, "return result",
         "top = k_d * Vec3(3.0, 2.0, 4.0) * 0.4503\n"
         "    return Vec3(min(result.x, top.x), min(result.y, top.y), min(result.z, top.z))",
