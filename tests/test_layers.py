@@ -17,7 +17,7 @@ ORDER = [
     "shade", "beyond", "glossy", "direct", "basic", "camera", "keyframes", "triangles", "geometry", "emitters",
     "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe", "ladders",
     "closed_forms", "io", "__init__", "slides", "explain", "progress", "stats", "study", "figures", "demo",
-    "trials", "estimator_check", "estimator_watch", "metamorphic", "testing", "cli",
+    "trials", "estimator_check", "estimator_watch", "metamorphic", "testing", "pytest_plugin", "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
 
