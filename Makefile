@@ -21,7 +21,7 @@ figures: $(STAMP)  ## make every figure of docs/gallery.md
 	$(BIN)/python -m raylab.cli figures -o docs/figures --gallery docs/gallery.md
 
 test: $(STAMP) lint  ## all tests, compiled and in plain Python (under 12 minutes on two cores)
-	$(BIN)/python -m pytest -n 2 -m "not crosscheck and not certify"
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not crosscheck and not certify"
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n 2 -m "not crosscheck and not certify" $(PLAIN)
 
 lint: $(STAMP)  ## ruff and mypy

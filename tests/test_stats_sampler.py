@@ -302,7 +302,7 @@ WRONG = {
         lambda u: ((w := lift(np.sqrt(u[:, 0]), 2 * PI * u[:, 1])), cosine_pdf(w)), lambda w: 0.9 * cosine_pdf(w), UP,
         "returned pdf", "returned pdf", None),
     "P11 texel centres": (texel_centres, whole_sphere_pdf, sphere(), "jacobian", "counts ties", None),
-    "P12 a thousand numbers": (coarse, cosine_pdf, UP, "jacobian", "ties", None),
+    "P12 a thousand numbers": (coarse, cosine_pdf, UP, "jacobian", "counts ties", None),
 }  # fmt: skip
 
 

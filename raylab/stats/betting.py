@@ -22,7 +22,7 @@ from raylab.stats.verdict import Outcome, Verdict
 
 SAFE = 0.9  # of the largest bet that can never lose everything
 SIZES = SAFE * 2.0 ** -np.arange(14.0)  # bets against the truth: all sizes, since it is not known how wrong it is
-KELLY = np.array([0.5, 1.0, 2.0])  # bets against a bias of exactly delta: about the best size, Kelly's
+KELLY = 2.0 ** np.arange(-3.0, 2.0)  # bets against a bias of delta, in Kelly's sizes; small, for the pilot may err
 PILOT = 256  # observations that set the size of those bets and are not bet on by them
 
 
