@@ -15,7 +15,7 @@ import numba
 import numpy as np
 from numba import types
 
-from raylab.jit import OPTIONS, in_cache_folder, njit
+from raylab.jit import CACHE, OPTIONS, in_cache_folder, njit
 from raylab.quadrics import ALL_ROWS, MOVING_COLUMNS, first_hit, quadric_at, quadric_at_time
 from raylab.vec3 import Vec3
 from raylab.view import view_at
@@ -106,4 +106,4 @@ def quadric_callbacks(moving: bool = False) -> tuple[int, int, Any]:
 
 def _compile(function: Any) -> Any:
     options = {name: value for name, value in OPTIONS.items() if name != "nogil"}
-    return in_cache_folder(lambda: numba.cfunc(types.void(types.int64), cache=True, **options)(function))
+    return in_cache_folder(lambda: numba.cfunc(types.void(types.int64), cache=CACHE, **options)(function))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,9 @@ from numba.misc.appdirs import AppDirs
 
 # Division by zero gives inf as in C, NaN stays NaN (fastmath would delete every test for it), no GIL while running.
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "nogil": True}
+
+# A process that may not write, such as the one that runs a submission, compiles everything anew.
+CACHE = os.environ.get("RAYLAB_CACHE") != "off"
 
 
 class Compiled:
@@ -86,12 +90,12 @@ def entry_point(dispatcher: Any, arguments: tuple[Any, ...]) -> Callable[..., An
 
 def cached_njit(function: Callable[..., Any]) -> Any:
     """`njit`, and keep the machine code on disk for the next process."""
-    return in_cache_folder(lambda: numba.njit(cache=True, **OPTIONS)(function))
+    return in_cache_folder(lambda: numba.njit(cache=CACHE, **OPTIONS)(function))
 
 
 def in_cache_folder(decorate: Callable[[], Any]) -> Any:
     """Call `decorate()`, which sets up a cached numba function, with numba's cache folder set to ours."""
-    theirs, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder())
+    theirs, config.CACHE_DIR = config.CACHE_DIR, str(cache_folder()) if CACHE else ""
     try:
         return decorate()
     finally:

@@ -1,0 +1,1 @@
+"""Grading: submissions run in a jail in another process, numbers come out, verdicts are made here."""
