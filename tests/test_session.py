@@ -12,7 +12,7 @@ from raylab.grading.process import relatives
 from raylab.grading.session import Limits, Session
 
 NAKED = Path(__file__).parent / "hostile" / "naked.py"
-SUM = {"id": "sum", "function": "f", "kind": "map", "returns": "Vec3"}
+SUM = {"id": "sum", "function": "f", "kind": "map", "gives": ["vector"]}
 GOOD = b"def f(a, b):\n    return a + b, a - b, a * b\n"
 
 
@@ -64,7 +64,7 @@ def test_one_task_that_kills_leaves_the_others():
     hang = {"id": "hang", "function": "g", "kind": "map"}
     with Session(Limits(cpu=3.0, wall=6.0), ladder=NAKED.with_name("picky.py"), read=[NAKED]) as session:
         findings = session.load(GOOD, [SUM, hang])
-        assert [(finding["stage"], finding["task"]) for finding in findings] == [("crash", "hang")]
+        assert [(finding["stage"], finding["task"]) for finding in findings] == [("run", "hang")]
         np.testing.assert_array_equal(session.map("sum", [[2.0, 1.0]]), [[3.0, 1.0, 2.0]])
 
 
@@ -75,3 +75,35 @@ def test_nothing_is_left_of_a_session():
         assert relatives(process, user) == [process]
     assert relatives(process, user) == []
     assert not folder.exists()
+
+
+FORGE = """
+import os, struct, sys
+frame = sys._getframe()
+while "replies" not in frame.f_locals:
+    frame = frame.f_back
+replies, number = frame.f_locals["replies"], frame.f_locals["number"]
+def send(payload, number=number, kind=1, length=None, magic=b"rayl", times=1):
+    length = len(payload) if length is None else length
+    os.write(replies, (struct.pack("<4sQQB", magic, number, length, kind) + payload) * times)
+"""
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "send(b'7')", "send(b'[1, 2]')", "send(b'{}')", "send(b'[')", "send(b'[' * 100_000)", "send(b'[]', kind=9)",
+        "send(b'x' * 8, kind=2)", "send(b'[]', number=number + 1)", "send(b'[]', length=1 << 63)",
+        "send(b'[]', magic=b'rayk')", "send(b'[]', times=2)", "os.write(replies, b'x' * 1000)",
+    ],
+)  # fmt: skip
+def test_forged_words_are_refused(session, said):
+    with pytest.raises(Fault) as caught:
+        session.load(f"{FORGE}{said}\nos.kill(os.getpid(), 19)\n".encode() + GOOD, [SUM])
+    assert caught.value.cause == "protocol"
+
+
+def test_numbers_of_another_size_are_refused(session):
+    session.load(b"def f(a, b):\n    return a, b\n", [SUM])
+    with pytest.raises(Fault, match="returned"):
+        session.map("sum", [[0.0, 1.0]])

@@ -84,6 +84,6 @@ def install() -> None:
     """Refuse from now on, for good. Asks for no_new_privs before."""
     assert kernel.COLUMN is not None
     code = program(kernel.COLUMN, os.getpid())
-    instructions = (Instruction * len(code))(*code)
+    instructions = (Instruction * len(code))(*(Instruction(*line) for line in code))
     filled = Program(len(code), instructions)
     kernel.prctl(kernel.SET_SECCOMP, 2, kernel.address(filled))

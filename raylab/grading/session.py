@@ -33,6 +33,8 @@ Array = npt.NDArray[np.float64]
 Task = Any  # raylab.submission.task.Task, which is not imported here, or a mapping with its fields
 PACKAGE = Path(__file__).resolve().parents[1]
 SYSTEM = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/etc/ld.so.cache", "/sys/devices/system/cpu")
+WIDTH = {"number": 1, "pair": 2, "vector": 3}  # of what a plain function takes and gives
+KEYS = ("stage", "task", "kind", "line", "text", "sentence", "advice", "detail")  # of a finding
 LONGEST = 4000  # characters of a text that a worker sends
 
 
@@ -59,7 +61,7 @@ class Session:
         `read`: what else it may read; `ladder`: a file with another climb(), for tests of the jail."""
         self.limits = limits or Limits()
         self.library = (library or PACKAGE.parent).resolve()
-        self.ladder = ladder and str(ladder.resolve())
+        self.ladder = str(ladder.resolve()) if ladder else None
         self.user = a_user() if os.geteuid() == 0 else None
         more = [str(path.resolve()) for path in read] + ([self.ladder] if self.ladder else [])
         self.rules = Rules(
@@ -99,6 +101,7 @@ class Session:
         If the worker dies of it, the tasks are tried one by one; a Fault is raised if all of them kill it.
         """
         self.source, self.tasks = source, {task["id"]: task for task in map(_plain, tasks)}
+        self.deaths = {}
         self._bury()
         try:
             return self._climb(list(self.tasks))
@@ -111,7 +114,8 @@ class Session:
                 found += self._climb([task])
             except Fault as fault:
                 faults.append(fault)
-                found.append({"stage": fault.cause, "task": task, "line": None, "sentence": str(fault), "detail": ""})
+                told = {"stage": "run", "task": task, "kind": "error", "sentence": str(fault), "detail": fault.detail}
+                found.append(dict.fromkeys(KEYS) | told)
         if len(faults) == len(self.tasks):
             raise faults[0]
         return found
@@ -124,7 +128,7 @@ class Session:
     def map(self, task: str, rows: npt.ArrayLike, columns: int | None = None) -> Array:
         """A plain function, called with each row of (n, k) numbers: (n, m) numbers."""
         given = np.ascontiguousarray(rows, np.float64)
-        columns = columns or width(self.tasks[task].get("returns", ""))
+        columns = columns or sum(WIDTH[name] for name in self.tasks[task].get("gives", ("number",)))
         words = {"shape": given.shape, "columns": columns}
         return self._numbers("map", task, words, given.tobytes(), (len(given), columns))
 
@@ -137,7 +141,10 @@ class Session:
 
     def _climb(self, tasks: list[str]) -> list[dict[str, Any]]:
         words = {"do": "load", "tasks": [self.tasks[task] for task in tasks]}
-        found = _clean(self._ask(words, self.source, None, *tasks))
+        try:
+            found = _clean(self._ask(words, self.source, None, *tasks))
+        except ProtocolError as error:
+            raise self._died(Fault("protocol", f"the program sent {error}", self.output), *tasks) from None
         self._loaded.update(tasks)
         return found
 
@@ -158,17 +165,20 @@ class Session:
             kind, reply = process.exchange(self._number, request, expected, budget)
             if kind == Kind.FAULT:
                 raise _fault(unpack_words(reply), str(process.output))
-            return reply
         except ProtocolError as error:
-            fault = process.fault("protocol", f"the program sent {error}")
-        except Fault as error:
-            fault = error
+            raise self._died(Fault("protocol", f"the program sent {error}", self.output), *tasks) from None
+        except Fault as fault:
+            raise self._died(fault, *tasks) from None
+        return reply
+
+    def _died(self, fault: Fault, *tasks: str) -> Fault:
+        """A fault in a request about some tasks, entered in the books if it was deadly."""
         if fault.killed:
             self._bury()
             for task in tasks:
                 self.deaths[task] = self.deaths.get(task, 0) + 1
         fault.task = tasks[0] if len(tasks) == 1 else ""
-        raise fault
+        return fault
 
     def _start(self) -> Process:
         """A new worker; its first words, before it has seen anything of the student's, are about its jail."""
@@ -209,11 +219,6 @@ def interpreter() -> tuple[str, ...]:
     return (*own, *(path for path in SYSTEM if os.path.exists(path)))
 
 
-def width(returns: str) -> int:
-    """Numbers in what a plain function returns: "Vec3, float" has four."""
-    return sum({"Vec3": 3, "square": 2}.get(kind.strip(), 1) for kind in returns.split(",")) if returns else 1
-
-
 def _plain(task: Task) -> Mapping[str, Any]:
     return asdict(task) if is_dataclass(task) and not isinstance(task, type) else dict(task)
 
@@ -228,8 +233,7 @@ def _clean(reply: bytes) -> list[dict[str, Any]]:
     words = unpack_words(reply)
     if not isinstance(words, list) or not all(isinstance(finding, dict) for finding in words):
         raise ProtocolError("no list of findings")
-    keys = ("stage", "task", "line", "sentence", "detail")
-    return [{key: _short(finding.get(key)) for key in keys} for finding in words[:200]]
+    return [{key: _short(finding.get(key)) for key in KEYS} for finding in words[:200]]
 
 
 def _short(value: Any) -> Any:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import runpy
 from collections.abc import Callable
+from dataclasses import asdict
 from functools import lru_cache
 from typing import Any
 
@@ -50,7 +51,7 @@ class Worker:
         """Climb the ladder with some of the tasks."""
         climbed = self.climb(source, words["tasks"])
         self.functions.update(climbed.functions)
-        return [finding if isinstance(finding, dict) else vars(finding) for finding in climbed.findings]
+        return [finding if isinstance(finding, dict) else asdict(finding) for finding in climbed.findings]
 
     def samples(self, words: Words, _: bytes) -> np.ndarray:
         """Of a shade() in a trial."""
@@ -81,8 +82,9 @@ def _climb_of(ladder: str | None) -> Climb:
     if ladder:
         return runpy.run_path(ladder)["climb"]
     from raylab.submission.ladder import climb  # type: ignore[import-not-found]
+    from raylab.submission.task import Task  # type: ignore[import-not-found]
 
-    return climb
+    return lambda source, tasks: climb(source, [Task.from_dict(task) for task in tasks])
 
 
 def _write(end: int, frame: bytes) -> None:
