@@ -17,12 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from raylab import samplers, trials
-from raylab.embree import TNEAR
+from raylab import trials
 from raylab.estimator_check import CALLS
-from raylab.surface import BACK, FRONT, TALLIES, intersect, round32
-from raylab.vec3 import Vec3, normalize
-from raylab.view import View
+from raylab.plain import Plain
+from raylab.vec3 import Vec3
 
 Findings = list[tuple[str, str]]
 
@@ -61,46 +59,6 @@ def load(file: str, name: str) -> Callable[..., Any]:
     return getattr(found, "py_func", found)
 
 
-class Watch:
-    """Calls a shade() at the place of a trial, and knows what it must leave alone."""
-
-    def __init__(self, shade: Callable[..., Any], trial: Any, seed: int) -> None:
-        scene = trial.scene
-        placement, place = scene.placement, trial.place
-        self.shade, self.seed = shade, seed
-        self.data = scene.data._replace(tally=View(np.zeros(TALLIES, np.int64)))
-        o, d = Vec3(*placement.points(place.origin)), Vec3(*(place.direction / np.linalg.norm(place.direction)))
-        hit = intersect(self.data, round32(o), round32(d), TNEAR, math.inf)
-        brdf = self.data.materials.at(
-            self.data.shapes[hit.shape, FRONT if hit.front else BACK], hit.N, hit.uv
-        )  # fmt: skip
-        diffuse = "k_d" in inspect.signature(shade).parameters
-        V = normalize(-round32(d))
-        self.arguments = (hit.x, brdf.k_d, hit.N) if diffuse else (hit.x, V, brdf, hit.N)
-
-    def call(self, number: int) -> Any:
-        rng = samplers.make("independent", self.seed, 1).stream(0, 0, number)
-        return self.shade(*self.arguments, self.data, rng)
-
-    def state(self) -> str:
-        """All numbers of the arguments; the tally of rays is the kernel's own."""
-        return _numbers((*self.arguments, self.data._replace(tally=None)))
-
-
-def _numbers(value: Any) -> str:
-    if isinstance(value, Vec3):
-        return repr((value.x, value.y, value.z))
-    if isinstance(value, View):
-        return repr((value.array.shape, value.array.tobytes()))
-    if isinstance(value, np.ndarray):
-        return repr((value.shape, value.tobytes()))
-    if isinstance(value, tuple):
-        return "(" + ",".join(_numbers(v) for v in value) + ")"
-    if hasattr(value, "rows") and hasattr(value, "store"):
-        return _numbers((value.rows, value.store))
-    return repr(value)
-
-
 def components(value: Any) -> tuple[list[float] | None, tuple[str, str] | None]:
     """The three numbers of what was returned, or what is wrong with it."""
     if isinstance(value, Vec3):
@@ -113,14 +71,14 @@ def components(value: Any) -> tuple[list[float] | None, tuple[str, str] | None]:
 
 def watch(shade: Callable[..., Any], trial: Any, technique: str, seed: int) -> Findings:
     """Everything that is wrong, each kind once, in the order in which it was seen."""
-    watched, bound = Watch(shade, trial, seed), trial.answer(technique).bound
+    watched, bound = Plain(trial.scene, trial.place, seed), trial.answer(technique).bound
     found: dict[str, str] = {}
     before = watched.state()
     first: dict[int, list[float]] = {}
     forbid_global_random()
     for number in [*range(CALLS // 2), *range(CALLS // 2)]:  # the same numbers twice: the same values are due
         try:
-            values, wrong = components(watched.call(number))
+            values, wrong = components(watched.call(shade, number))
         except GlobalRandomError as error:
             return [*found.items(), ("global random", f"{error}() was called")]
         except Exception as error:

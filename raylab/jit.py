@@ -7,10 +7,11 @@ Student code is never cached.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -38,15 +39,19 @@ class Compiled:
     halves the time to compile a kernel. `py_func` is the plain Python function.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    in_python = False  # see `interpreted`
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any] = OPTIONS) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
-        self._outer = numba.njit(**OPTIONS)(function)
+        self._outer = numba.njit(**options)(function)
         self.inner = _InnerDispatcher(
-            function, targetoptions=OPTIONS | {"nopython": True, "forceinline": True}, pipeline_class=_InnerCompiler
+            function, targetoptions=options | {"nopython": True, "forceinline": True}, pipeline_class=_InnerCompiler
         )
 
     def __call__(self, *arguments: Any) -> Any:
+        if Compiled.in_python:
+            return self.py_func(*arguments)
         # numba takes every Python int for 64 bits with a sign
         return self._outer(*(np.uint64(a) if type(a) is int and a >= 1 << 63 else a for a in arguments))
 
@@ -73,6 +78,19 @@ def _typeof(value: Compiled, context: Any) -> types.Type:
 def njit(function: Callable[..., Any]) -> Any:
     """Compile `function` when it is needed; with NUMBA_DISABLE_JIT=1 it stays plain Python."""
     return function if config.DISABLE_JIT else Compiled(function)
+
+
+@contextlib.contextmanager
+def interpreted() -> Iterator[None]:
+    """Within, all that `njit` has made runs as plain Python when Python calls it: at once, and under a debugger.
+
+    For one thread; kernels that run meanwhile do not notice.
+    """
+    before, Compiled.in_python = Compiled.in_python, True
+    try:
+        yield
+    finally:
+        Compiled.in_python = before
 
 
 def entry_point(dispatcher: Any, arguments: tuple[Any, ...]) -> Callable[..., Any]:

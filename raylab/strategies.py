@@ -45,6 +45,15 @@ BUILT_IN: dict[str, tuple[Any, str]] = {
 NAMES = tuple(BUILT_IN)
 
 
+def signature(name: str) -> tuple[str, ...]:
+    """The names of the arguments of a built-in shade()."""
+    return _parameters(BUILT_IN[name][0])
+
+
+def _parameters(function: Any) -> tuple[str, ...]:
+    return tuple(inspect.signature(getattr(function, "py_func", function)).parameters)
+
+
 class Strategy(NamedTuple):
     """What all strategies hold; a subclass adds shade() and visible()."""
 
@@ -52,7 +61,7 @@ class Strategy(NamedTuple):
 
 
 def _make(name: str, function: Any, cached: bool) -> type:
-    parameters = tuple(inspect.signature(getattr(function, "py_func", function)).parameters)
+    parameters = _parameters(function)
     if parameters == _DIFFUSE:
 
         def shade(self, x, V, brdf, N, scene, rng):

@@ -1,0 +1,167 @@
+"""Vet: may this function name what it names? Asked of the syntax tree.
+
+The namespace of a submission holds allowed objects only, so a name leads to one of them, to a local variable or to
+nothing; an attribute must be listed. `raylab.submission.wall` asks the same of what numba makes of it.
+"""
+
+from __future__ import annotations
+
+import ast
+import types
+from collections.abc import Iterator
+from typing import Any
+
+from raylab.submission import allowed
+from raylab.submission.allowed import Unavailable
+from raylab.submission.finding import Problem
+from raylab.submission.source import Source
+from raylab.submission.task import Task
+
+_REFUSED: dict[type, tuple[str, str]] = {
+    ast.Import: ("An import stands inside the function.", "Move it to the top of the file."),
+    ast.ImportFrom: ("An import stands inside the function.", "Move it to the top of the file."),
+    ast.With: ("`with` cannot be used in graded functions; files cannot be opened.", "Use the arguments only."),
+    ast.Global: (
+        "A shade() cannot change globals: a sample must depend on its arguments only.", "Return what you have found.",
+    ),
+    ast.Nonlocal: ("An inner function cannot change variables of the outer one.", "Return what it has found."),
+    ast.Try: ("`try` cannot be used in graded functions.", "Test before dividing (if p > 0.0:) instead of catching."),
+    ast.ClassDef: ("Classes cannot be used inside a function.", "Use numbers, tuples and Vec3."),
+    ast.Yield: ("`yield` cannot be used in graded functions.", "Add up in a for loop and return the sum."),
+    ast.YieldFrom: ("`yield` cannot be used in graded functions.", "Add up in a for loop and return the sum."),
+    ast.Await: ("`await` cannot be used in graded functions.", ""),
+    ast.GeneratorExp: (
+        "A generator (... for ... in ...) cannot be compiled.", "Write a for loop that adds up: result += ...",
+    ),
+    ast.Dict: ("Dictionaries cannot be used in graded functions.", "Use variables or tuples."),
+    ast.DictComp: ("Dictionaries cannot be used in graded functions.", "Use variables or tuples."),
+    ast.Set: ("Sets cannot be used in graded functions.", "Use tuples."),
+    ast.SetComp: ("Sets cannot be used in graded functions.", "Use tuples."),
+    ast.Delete: ("`del` cannot be used in graded functions.", "Leave the variable alone."),
+    ast.Match: ("`match` cannot be compiled.", "Write if and elif."),
+}  # fmt: skip
+
+
+def reachable(source: Source, name: str) -> list[str]:
+    """The function `name` and all functions of the file that it calls, at any depth."""
+    found, waiting = [], [name]
+    while waiting:
+        current = waiting.pop()
+        if current in found:
+            continue
+        found.append(current)
+        named = {n.id for n in ast.walk(source.functions[current]) if isinstance(n, ast.Name)}
+        waiting += sorted(named & source.functions.keys())
+    return found
+
+
+def vet(source: Source, task: Task) -> None:
+    """Raise a Problem for the first thing, from top to bottom, that the task's function must not do."""
+    problems = [p for name in reachable(source, task.function) for p in _Vet(source, task, name).problems()]
+    if problems:
+        raise min(problems, key=lambda p: p.line)
+
+
+class _Vet:
+    """One function and what it names."""
+
+    def __init__(self, source: Source, task: Task, name: str) -> None:
+        self.source, self.task, self.function = source, task, source.functions[name]
+        self.local = set(_bound(self.function))
+
+    def problems(self) -> Iterator[Problem]:
+        calls = [n for n in ast.walk(self.function) if isinstance(n, ast.Name) and n.id == self.function.name]
+        if calls:
+            yield Problem(
+                f"`{self.function.name}` calls itself.", "Write a loop: no box of the lecture needs recursion.",
+                calls[0].lineno,
+            )  # fmt: skip
+        owned = {id(n.value) for n in ast.walk(self.function) if isinstance(n, ast.Attribute)}
+        for node in ast.walk(self.function):
+            line = getattr(node, "lineno", 0)
+            if type(node) in _REFUSED:
+                yield Problem(*_REFUSED[type(node)], line)
+            elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and id(node) not in owned:
+                yield from self._judge(self._named(node), node)
+            elif isinstance(node, ast.Attribute):
+                yield from self._attribute(node)
+
+    def _named(self, node: ast.expr) -> Any:
+        """The object that a name or a dotted name stands for; a local variable stands for None."""
+        if isinstance(node, ast.Attribute):
+            owner = self._named(node.value)
+            return allowed.member(owner, node.attr) if isinstance(owner, types.ModuleType) else owner and None
+        if not isinstance(node, ast.Name) or node.id in self.local or node.id in self.source.functions:
+            return None
+        for known in (self.source.names, allowed.BUILT_INS, allowed.ERRORS):
+            if node.id in known:
+                return known[node.id]
+        return _unknown(node.id, self.local | self.source.names.keys() | self.source.functions.keys())
+
+    def _judge(self, value: Any, node: ast.expr) -> Iterator[Problem]:
+        if isinstance(value, Unavailable):
+            yield Problem(value.sentence, value.advice, node.lineno)
+        elif isinstance(value, list):
+            yield Problem(f"`{ast.unparse(node)}` cannot be used in graded functions.", "", node.lineno)
+        for word in self.task.withheld:
+            if value is not None and value is getattr(allowed.lecture, word, self):
+                yield Problem(
+                    f"`{word}` is what you are asked to write yourself here.",
+                    "Work it out from u1 and u2.",
+                    node.lineno,
+                )
+
+    def _attribute(self, node: ast.Attribute) -> Iterator[Problem]:
+        owner = self._named(node.value)
+        if isinstance(owner, Unavailable):
+            yield Problem(owner.sentence, owner.advice, node.lineno)
+        elif isinstance(owner, types.ModuleType):
+            yield from self._judge(allowed.member(owner, node.attr), node)
+        elif not isinstance(node.ctx, ast.Load):
+            yield Problem(
+                f"This line changes `{ast.unparse(node)}`; points, vectors and lights do not change.",
+                "Make a new vector: Vec3(x, y, z).", node.lineno,
+            )  # fmt: skip
+        elif node.attr not in allowed.ATTRIBUTES:
+            yield Problem(f"`.{node.attr}` is not known here.", _instead(node.attr), node.lineno)
+
+
+def _instead(attribute: str) -> str:
+    words = {"norm": "length", "mag": "length", "magnitude": "length", "normalized": "normalize", "unit": "normalize"}
+    word = words.get(attribute, attribute)
+    if callable(getattr(allowed.lecture, word, None)):
+        return f"It is a function: write {word}(v)."
+    if attribute in ("normal", "N_y"):
+        return "The normal at the point y is y.n."
+    found = allowed.nearest(attribute, allowed.ATTRIBUTES)
+    if not found:
+        found = allowed.nearest(attribute, allowed.lecture.__all__)
+    return found
+
+
+def _unknown(name: str, known: Any) -> Unavailable:
+    if name in dir(__builtins__) or name in ("exec", "eval", "open", "getattr"):
+        return Unavailable(
+            f"`{name}` cannot be used in graded functions.", "Use the arguments and raylab.lecture only."
+        )
+    if name in allowed.lecture.__all__:
+        return Unavailable(f"`{name}` is not defined.", f"Import it: from raylab.lecture import {name}")
+    if name in ("np", "math"):
+        return Unavailable(
+            f"`{name}` is not defined.", "Write at the top: import " + {"np": "numpy as np"}.get(name, name)
+        )
+    if name == "pi":
+        return Unavailable("`pi` is not defined.", "Import it: from raylab.lecture import PI")
+    every = [*known, *allowed.BUILT_INS, *allowed.lecture.__all__]
+    return Unavailable(f"`{name}` is not defined.", allowed.nearest(name, every) or "Check how it is written.")
+
+
+def _bound(function: ast.FunctionDef) -> Iterator[str]:
+    """All names that are given a value somewhere inside."""
+    for node in ast.walk(function):
+        if isinstance(node, ast.arg):
+            yield node.arg
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.id
+        elif isinstance(node, ast.FunctionDef) and node is not function:
+            yield node.name

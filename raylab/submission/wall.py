@@ -1,0 +1,36 @@
+"""Wall: the allow-list once more, of what numba is about to compile; here every name has become an object."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Callable
+from typing import Any
+
+from numba.core import ir
+from numba.core.compiler import run_frontend
+
+from raylab.submission import allowed
+from raylab.submission.allowed import Unavailable
+from raylab.submission.finding import Problem
+
+
+def wall(function: Callable[..., Any], own: Callable[[Any], bool]) -> None:
+    """Raise a Problem if `function`, as numba reads it, holds an object or an attribute that is not allowed."""
+    held: dict[str, Any] = {}
+    for block in run_frontend(function).blocks.values():
+        for statement in block.body:
+            value = getattr(statement, "value", None)
+            if isinstance(statement, ir.EnterWith):
+                raise Problem("`with` cannot be used in graded functions.", "", statement.loc.line)
+            if isinstance(value, ir.Global | ir.FreeVar):
+                held[statement.target.name] = value.value
+                if not (own(value.value) or allowed.permitted(value.value)):
+                    raise Problem(f"`{value.name}` cannot be used in graded functions.", "", statement.loc.line)
+            if isinstance(value, ir.Expr) and value.op == "getattr":
+                owner = held.get(value.value.name)
+                if isinstance(owner, types.ModuleType):
+                    held[statement.target.name] = found = allowed.member(owner, value.attr)
+                    if isinstance(found, Unavailable):
+                        raise Problem(found.sentence, found.advice, statement.loc.line)
+                elif value.attr not in allowed.ATTRIBUTES:
+                    raise Problem(f"`.{value.attr}` is not known here.", "", statement.loc.line)
