@@ -38,3 +38,12 @@ def save(image: Image, path: str | PathLike[str]) -> None:
     from raylab.io.picture import write
 
     write(image, Path(path))
+
+
+def __getattr__(name: str) -> Any:
+    """`raylab.estimator_test` is for test files; pytest is imported only where it is asked for."""
+    if name == "estimator_test":
+        from raylab.pytest_plugin import estimator_test
+
+        return estimator_test
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from raylab import description as d
 from raylab.probe import Pixel, Place
-from raylab.trials.trial import affine, random_pose
+from raylab.trials.trial import Trial, affine, random_pose
 
 Array = npt.NDArray[np.float64]
 Expected = Literal["bitwise", "rounding", "distribution", "mean"]
@@ -49,6 +49,16 @@ class Relation:
             return Pixel(self.description.camera.width - 1 - place.column, place.row) if mirrored else place
         linear, offset = self.points[:3, :3], self.points[:3, 3]
         return Place(linear @ place.origin + offset, linear @ place.direction)
+
+    def trial(self, trial: Trial) -> Trial:
+        """A trial after the change; its answers are those of before, and to be multiplied by `factor`."""
+        look: Any = trial.look
+        if isinstance(look, Pixel):
+            look = self.place(look)
+        elif self.points is not None:
+            linear, offset = self.points[:3, :3], self.points[:3, 3]
+            look = (linear @ look[0] + offset, linear @ look[1])
+        return replace(trial, description=self.description, look=look)
 
 
 Maker = Callable[[d.SceneDescription, np.random.Generator], Relation | None]

@@ -136,8 +136,10 @@ class Probe:
 
     def sample(self, seed: int, n: int, first: int = 0) -> Array:
         """Samples first .. first + n - 1 of the sequence that belongs to `seed`, (n, 3)."""
+        return self._fill(self._kernel(seed), n, first)
+
+    def _fill(self, run: Callable[..., None], n: int, first: int) -> Array:
         values = np.empty((n, 3))
-        run = self._kernel(seed)
         if n < 2 * BLOCK:
             run(values, first)
             return values
@@ -147,7 +149,8 @@ class Probe:
 
     def draws(self, seed: int, channel: int | None = None) -> Draws:
         """A function n -> (n, 3), or (n,) for one colour channel, that goes on drawing."""
-        return Draws(lambda first, n: self.sample(seed, n, first), channel)
+        run = self._kernel(seed)
+        return Draws(lambda first, n: self._fill(run, n, first), channel)
 
     def means(self, seed: int, channel: int) -> Callable[[int, int], Array]:
         """A function (N, n) -> (n,): means of N samples each, for claims about how errors shrink."""

@@ -71,10 +71,10 @@ def test_inconclusive_is_said_and_is_no_failure(session, monkeypatch):
     source = "\n".join(
         [
             "import pytest",
-            "from raylab import testing",
+            "from raylab.testing import deciding",
             "@pytest.fixture(autouse=True)",
             "def little_patience(monkeypatch):",
-            "    monkeypatch.setattr(testing, 'CAP', 1e-9)",
+            "    monkeypatch.setattr(deciding, 'CAP', 1e-9)",
             "def test_too_short(raylab_claims):",
             "    raylab_claims.unbiased('area_diffuse', trial='polygons')",
         ]

@@ -12,7 +12,7 @@ from vectors import random_points
 
 from raylab.stats import shrinks_as
 from raylab.stats.betting import Claim
-from raylab.stats.claims import decide, mean_is
+from raylab.stats.claims import decide, mean_is, variance_is
 from raylab.stats.convergence import (
     EXPECTED,
     fit,
@@ -141,6 +141,35 @@ def test_the_offsets_of_strata_must_not_be_shared():
     verdict = variance_at_most("shared", shared, 64, 4.0 / (3.0 * 64**2), reach=2.0 / 8.0)
     assert verdict.outcome == "FAIL"
     assert verdict.samples <= 3 * 2000
+
+
+def test_the_gate_lets_in_all_up_to_the_limit_and_nothing_from_twice_the_limit():
+    """+-s: (X - X')^2 / 2 is 0 or 2 s^2, with the mean s^2, exactly. Ten runs each."""
+
+    def two_valued(variance):
+        return lambda samples, n: math.sqrt(variance) * (2.0 * RNG.integers(0, 2, n) - 1.0)
+
+    def outcomes(variance, reach=4.0):
+        draw, more = two_valued(variance), {"reach": reach, "beta": 1e-9, "cap": 1 << 14}
+        return {variance_at_most("gate", draw, 16, 1.0, **more).outcome for _ in range(10)}
+
+    assert outcomes(0.2) == outcomes(0.5) == outcomes(1.0) == {"PASS"}
+    assert outcomes(2.0) <= {"FAIL", "INCONCLUSIVE"}
+    assert outcomes(2.5) == {"FAIL"}
+    assert outcomes(1.2, reach=1.9) == {"FAIL"}  # two means are further apart than strata allow
+
+
+@pytest.mark.parametrize(("width", "outcome"), [(1.0, "PASS"), (0.9, "FAIL")])
+def test_strata_are_filled_to_their_edges(width, outcome):
+    """Jitter over 0.9 of a cell leaves the mean alone, and 0.81 of the variance: too little is wrong as well."""
+
+    def draw(n):
+        own = means("stratified", linear, 64, n)
+        cells = 2.0 * (np.arange(8) + 0.5) / 8
+        return own if width == 1.0 else (cells[:, None] + width * (RNG.random((n, 8, 8)) - 0.5) / 4).mean(axis=(1, 2))
+
+    verdict = variance_is("jitter", draw, 1.0 / (3.0 * 64**2), low=1.0 - 0.125, high=1.0 + 0.125)
+    assert verdict.outcome == outcome, str(verdict)
 
 
 def test_the_sign_test_of_heavy_errors():

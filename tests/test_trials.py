@@ -19,7 +19,7 @@ from raylab.sampling import PI, sample_cos_hemisphere, sample_hemisphere
 from raylab.shadow import shadow, shadow_toward
 from raylab.stats import Budget
 from raylab.strategies import BUILT_IN
-from raylab.testing import Examiner
+from raylab.testing import Examiner, Source
 from raylab.trials import CATALOGUE
 from raylab.vec3 import black, dot, normalize
 
@@ -138,3 +138,42 @@ def test_what_a_trial_does_not_know_is_named():
         trials.make("nothing", 1)
     with pytest.raises(UserError, match="has no answer for 'env_cosine'"):
         EXAMINER.unbiased("env_cosine", trial="polygons")
+
+
+# --- samples from elsewhere ---
+
+
+class Elsewhere:
+    """As if the samples of a shade() came from another process."""
+
+    def __init__(self, shade):
+        self.shade = shade
+
+    def draws(self, trial, seed):
+        return trial.probe(self.shade, 1).draws(seed)
+
+
+class Dim(Elsewhere):
+    def draws(self, trial, seed):
+        draw = super().draws(trial, seed)
+        return lambda n: 0.8 * draw(n)
+
+
+def test_any_source_of_samples_can_be_examined():
+    right, dim, sky = Elsewhere("env_uniform"), Dim("env_uniform"), {"trial": "gradient_sky"}
+    assert isinstance(right, Source)
+    examiner = Examiner(Budget(tests=1000))  # a budget of its own: the names are those of the classes
+    assert examiner.unbiased("env_uniform", right, delta=0.03, **sky).outcome == "PASS"
+    report = examiner.unbiased("env_uniform", dim, **sky)
+    assert report.outcome == "FAIL"
+    assert "unbiased env_uniform Dim gradient_sky" in report.name
+    assert examiner.same_mean("env_uniform", "env_cosine", right, delta=0.03, **sky).outcome == "PASS"
+    assert examiner.same_mean("env_uniform", "env_cosine", dim, delta=0.03, **sky).outcome == "FAIL"
+    assert examiner.variance("env_uniform", right, **sky).outcome == "PASS"
+    assert examiner.variance("env_uniform", dim, **sky).outcome == "FAIL"
+    for claim in (examiner.shrinks, examiner.independent, lambda *a, **k: examiner.more_rays(*a, delta=0.05, **k)):
+        assert claim("env_uniform", right, **sky).outcome == "PASS"
+    for relation in ("times_8", "rotated", "exposure_3"):
+        assert examiner.relation(relation, "env_uniform", right, delta=0.03, **sky).outcome == "PASS"
+    with pytest.raises(UserError, match="Elsewhere: expected a function"):
+        examiner.well_behaved("env_uniform", right, **sky)

@@ -15,9 +15,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
 
-from raylab.stats.histogram import Array, Histogram, edges_for
+from raylab.stats.histogram import Array, Histogram, edges_for, log_growth
 from raylab.stats.verdict import Outcome, Verdict
 
 SAFE = 0.9  # of the largest bet that can never lose everything
@@ -71,7 +70,7 @@ def downward(histogram: Histogram, high: float, mean: float) -> float:
 
 
 def _mix(logs: Array) -> float:
-    return float(logsumexp(logs) - math.log(len(logs)))
+    return float(np.logaddexp.reduce(logs)) - math.log(len(logs))
 
 
 def interval(histogram: Histogram, beta: float) -> tuple[float, float]:
@@ -96,6 +95,43 @@ def _boundary(outer: float, inner: float, refuted: Callable[[float], bool]) -> f
     return outer
 
 
+class Bets:
+    """The log capital of bets (k,) against a mean, for histograms with the same edges; logarithms are taken once."""
+
+    def __init__(self, edges: Array, mean: float, bets: Array) -> None:
+        self._at = log_growth(edges, mean, bets)
+
+    def log_capital(self, histogram: Histogram) -> float:
+        """Of a gambler whose capital is shared out evenly among the bets."""
+        return _mix(histogram.log_capital_of(self._at))
+
+
+class Gamblers:
+    """Those who bet against a claim: that it is true, that the mean is `delta` above the truth, and `delta` below."""
+
+    def __init__(self, claim: Claim, edges: Array, bet: float) -> None:
+        low, high, above, below = claim.low, claim.high, claim.truth + claim.delta, claim.truth - claim.delta
+        up, down = claim.truth + claim.truth_error, claim.truth - claim.truth_error
+        self.up = Bets(edges, up, SIZES / (up - low)) if up > low else None
+        self.down = Bets(edges, down, -SIZES / (high - down)) if down < high else None
+        self.not_above = Bets(edges, above, -np.minimum(KELLY * bet, _most(high - above))) if above <= high else None
+        self.not_below = Bets(edges, below, np.minimum(KELLY * bet, _most(below - low))) if below >= low else None
+
+    def against(self, seen: Histogram) -> float:
+        """Log capital of those who bet that the claim is wrong, up and down."""
+        up, down = (0.0 if bets is None else bets.log_capital(seen) for bets in (self.up, self.down))
+        return float(np.logaddexp(up, down)) - math.log(2.0)
+
+    def against_delta(self, seen: Histogram) -> float:
+        """The lesser log capital of the two who bet that the mean is nearer to the truth than delta."""
+        both = (self.not_above, self.not_below)  # None: the observations cannot average as much
+        return min(math.inf if bets is None else bets.log_capital(seen) for bets in both)
+
+
+def _most(distance: float) -> float:
+    return SAFE / distance if distance > 0.0 else math.inf
+
+
 class Test:
     """A claim under test: `update(values)` until `outcome` is no longer INCONCLUSIVE, or patience ends."""
 
@@ -109,7 +145,7 @@ class Test:
         self._early: list[Array] = []
         self._all: Histogram | None = None
         self._late: Histogram | None = None  # without the pilot
-        self._bet = 0.0
+        self._gamblers: Gamblers | None = None
 
     def update(self, values: Array) -> Outcome:
         """Look at further observations (n,); once FAIL or PASS is said it stays."""
@@ -121,8 +157,11 @@ class Test:
         if wrong.any():
             return self._out_of_range(float(values[wrong][0]))
         self._take(values)
-        if self._all is not None and self._late is not None:
-            self._decide(self._all, self._late)
+        if self._gamblers is not None and self._all is not None and self._late is not None:
+            if self._gamblers.against(self._all) >= -math.log(self.claim.alpha):
+                self.outcome = "FAIL"
+            elif self._gamblers.against_delta(self._late) >= -math.log(self.claim.beta):
+                self.outcome = "PASS"
         return self.outcome
 
     def _out_of_range(self, value: float) -> Outcome:
@@ -144,33 +183,10 @@ class Test:
             edges = edges_for(claim.low, claim.high, claim.truth, spread)
             self._all, self._late = Histogram(edges), Histogram(edges)
             self._all.add(pilot)
-            self._bet = claim.delta / (spread**2 + claim.delta**2)
+            self._gamblers = Gamblers(claim, edges, claim.delta / (spread**2 + claim.delta**2))
         assert self._late is not None
         self._all.add(values)
         self._late.add(values)
-
-    def _decide(self, everything: Histogram, late: Histogram) -> None:
-        claim = self.claim
-        against = np.logaddexp(
-            upward(everything, claim.low, claim.truth + claim.truth_error),
-            downward(everything, claim.high, claim.truth - claim.truth_error),
-        ) - math.log(2.0)
-        if against >= -math.log(claim.alpha):
-            self.outcome = "FAIL"
-        elif min(self._not_above(late), self._not_below(late)) >= -math.log(claim.beta):
-            self.outcome = "PASS"
-
-    def _not_above(self, late: Histogram) -> float:
-        """Log capital of the gambler who bets that the mean is less than truth + delta."""
-        mean, high = self.claim.truth + self.claim.delta, self.claim.high
-        largest = SAFE / (high - mean) if high > mean else math.inf
-        return math.inf if high < mean else _mix(late.log_capital(mean, -np.minimum(KELLY * self._bet, largest)))
-
-    def _not_below(self, late: Histogram) -> float:
-        """Log capital of the gambler who bets that the mean is more than truth - delta."""
-        mean, low = self.claim.truth - self.claim.delta, self.claim.low
-        largest = SAFE / (mean - low) if mean > low else math.inf
-        return math.inf if low > mean else _mix(late.log_capital(mean, np.minimum(KELLY * self._bet, largest)))
 
     def verdict(self, seconds: float = math.nan) -> Verdict:
         """What is known so far."""

@@ -25,6 +25,12 @@ def edges_for(low: float, high: float, centre: float, spread: float) -> Array:
     return np.unique(np.clip(edges, low, high))
 
 
+def log_growth(edges: Array, mean: float, bets: Array) -> Array:
+    """log(1 + l (y - mean)) for each bet l (k,) and each edge y."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.log1p(np.maximum(np.outer(bets, edges - mean), -1.0)))
+
+
 class Histogram:
     """Counts and sums of observations in [edges[0], edges[-1]]; the last bin is closed."""
 
@@ -41,10 +47,12 @@ class Histogram:
 
     def log_capital(self, mean: float, bets: Array) -> Array:
         """A lower bound, for each bet l in `bets` (k,), of the sum of log(1 + l (y - mean)) over all observations."""
-        with np.errstate(divide="ignore"):
-            at_edges = np.log1p(np.maximum(np.outer(bets, self.edges - mean), -1.0))
-        left, right = at_edges[:, :-1], at_edges[:, 1:]
+        return self.log_capital_of(log_growth(self.edges, mean, bets))
+
+    def log_capital_of(self, at_edges: Array) -> Array:
+        """The same from what `log_growth` gives at the edges, (k, edges)."""
         share = (self.sums - self.counts * self.edges[:-1]) / np.diff(self.edges)
         share = np.clip(share, 0.0, self.counts)  # rounding of the sums
-        used = self.counts > 0
-        return (left[:, used] * (self.counts - share)[used] + right[:, used] * share[used]).sum(axis=1)
+        used = np.flatnonzero(self.counts)
+        left, right = (self.counts - share)[used], share[used]
+        return np.asarray(at_edges[:, used] @ left + at_edges[:, used + 1] @ right)
