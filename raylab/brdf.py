@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from raylab.jit import njit
-from raylab.record import record
+from raylab.record import methods_of, record
 from raylab.sampling import PI, cos_power, pdf_cos_hemisphere, pdf_phong_lobe, sample_cos_hemisphere, sample_phong_lobe
 from raylab.vec3 import Vec3, black, dot, luminance
 
@@ -24,7 +24,21 @@ def reflect(V, N):
     return N * (2.0 * dot(N, V)) - V
 
 
+class Scattering:
+    """A surface that sends light in all directions, so that nothing is left for the mirrored one or the refracted."""
+
+    def is_specular(self):
+        return False
+
+    def reflection(self, V, N):
+        return black
+
+    def refraction(self, V, N):
+        return N, black
+
+
 @record
+@methods_of(Scattering)
 class Lambertian(NamedTuple):
     """f_r = k_d, sampled in proportion to f_r cos(theta)."""
 
@@ -46,17 +60,9 @@ class Lambertian(NamedTuple):
     def is_glossy(self):
         return False
 
-    def is_specular(self):
-        return False
-
-    def reflection(self, V, N):
-        return black
-
-    def refraction(self, V, N):
-        return N, black
-
 
 @record
+@methods_of(Scattering)
 class Phong(NamedTuple):
     """f_r = k_d + k_s (n + 2) / (2 pi) max(0, R . L)^n, the energy-normalised modified Phong model.
 
@@ -93,15 +99,6 @@ class Phong(NamedTuple):
 
     def is_glossy(self):
         return luminance(self.k_s) > 0.0
-
-    def is_specular(self):
-        return False
-
-    def reflection(self, V, N):
-        return black
-
-    def refraction(self, V, N):
-        return N, black
 
 
 @njit

@@ -51,10 +51,11 @@ def main() -> NoReturn:
     sys.exit(code)
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
-@click.version_option(raylab.__version__, message="raylab %(version)s")
-def commands() -> None:
-    """The lecture "Advanced Ray Tracing" as a laboratory."""
+commands = click.Group(
+    help='The lecture "Advanced Ray Tracing" as a laboratory.',
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+)
+click.version_option(raylab.__version__, message="raylab %(version)s")(commands)
 
 
 @commands.command("render")

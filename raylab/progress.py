@@ -1,15 +1,35 @@
-"""The progress bar of a render: how far, how fast, how noisy."""
+"""Progress bars: of a render, how far, how fast, how noisy; of an experiment, which step."""
 
 from __future__ import annotations
 
 import sys
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
 from raylab.render import Progress
 
+T = TypeVar("T")
 
-class Bar:
+
+class _OnScreen:
+    """A bar on standard error from the first step to the end of the `with`, if shown (by default: on a terminal)."""
+
+    def __init__(self, shown: bool | None) -> None:
+        self.shown = sys.stderr.isatty() if shown is None else shown
+        self.bar: Any = None
+
+    def __enter__(self: T) -> T:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.bar is not None:
+            self.bar.refresh()
+            self.bar.close()
+
+
+class Bar(_OnScreen):
     """A progress bar on standard error; call it with a Progress. Hidden unless `shown` or, by default, on a terminal.
 
     The bar is full after all samples or, when a time was asked for, after `seconds`; when an error was asked for,
@@ -19,12 +39,8 @@ class Bar:
     def __init__(
         self, shown: bool | None = None, seconds: float | None = None, relative_error: float | None = None
     ) -> None:
-        self.shown = sys.stderr.isatty() if shown is None else shown
+        super().__init__(shown)
         self.seconds, self.relative_error = seconds, relative_error
-        self.bar: Any = None
-
-    def __enter__(self) -> Bar:
-        return self
 
     def __call__(self, progress: Progress) -> None:
         if not self.shown:
@@ -34,13 +50,6 @@ class Bar:
         self.bar.n = progress.done if self.seconds is None else round(min(progress.seconds, self.seconds), 1)
         self.bar.set_postfix_str(self.text(progress), refresh=False)
         self.bar.update(0)
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self.bar is not None:
-            self.bar.refresh()
-            self.bar.close()
 
     def text(self, progress: Progress) -> str:
         """For example "12.3 Mrays/s, error 2.1 %"."""
@@ -65,15 +74,12 @@ class Bar:
         )
 
 
-class StepBar:
+class StepBar(_OnScreen):
     """A bar over the steps of a long experiment; call it with (done, total, what). Silent unless shown."""
 
     def __init__(self, name: str, shown: bool | None = None) -> None:
-        self.name, self.shown = name, sys.stderr.isatty() if shown is None else shown
-        self.bar: Any = None
-
-    def __enter__(self) -> StepBar:
-        return self
+        super().__init__(shown)
+        self.name = name
 
     def __call__(self, done: int, total: int, what: str) -> None:
         if not self.shown:
@@ -86,10 +92,3 @@ class StepBar:
         self.bar.n, self.bar.total = done, total
         self.bar.set_postfix_str(what, refresh=False)
         self.bar.update(0)
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self.bar is not None:
-            self.bar.refresh()
-            self.bar.close()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import inspect
 import operator
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import numpy as np
@@ -46,6 +46,18 @@ def record(cls: type[T]) -> type[T]:
 
 
 _compiled_methods: dict[tuple[type, str], Any] = {}
+
+
+def methods_of(shared: type) -> Callable[[type[T]], type[T]]:
+    """Below @record: a NamedTuple class, which cannot inherit, gets the methods of `shared` that are not its own."""
+
+    def add(cls: type[T]) -> type[T]:
+        for name, member in vars(shared).items():
+            if inspect.isfunction(member) and name not in vars(cls):
+                setattr(cls, name, member)
+        return cls
+
+    return add
 
 
 def _dispatcher(numba_type: Any, name: str) -> types.Dispatcher | None:

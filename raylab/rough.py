@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from raylab import fresnel
+from raylab.brdf import Scattering
 from raylab.jit import cached_njit, njit
 from raylab.microfacet import Microfacets, sample_visible_normal
-from raylab.record import record
+from raylab.record import methods_of, record
 from raylab.sampling import PI, pdf_cos_hemisphere, sample_cos_hemisphere
 from raylab.vec3 import Vec3, black, cross, dot, normalize
 from raylab.view import View
@@ -27,6 +28,7 @@ QUADRATURE = 64  # facets for each of them, along each side of the square
 
 
 @record
+@methods_of(Scattering)
 class RoughConductor(NamedTuple):
     """Rough metal of complex index eta + i k for each colour, times the colour `specular`."""
 
@@ -52,17 +54,9 @@ class RoughConductor(NamedTuple):
     def is_glossy(self):
         return True
 
-    def is_specular(self):
-        return False
-
-    def reflection(self, V, N):
-        return black
-
-    def refraction(self, V, N):
-        return N, black
-
 
 @record
+@methods_of(Scattering)
 class RoughPlastic(NamedTuple):
     """A diffuse base, reflectance pi k_d, under a rough clear coat of index eta: what the coat lets in and out,
 
@@ -105,15 +99,6 @@ class RoughPlastic(NamedTuple):
 
     def is_glossy(self):
         return True
-
-    def is_specular(self):
-        return False
-
-    def reflection(self, V, N):
-        return black
-
-    def refraction(self, V, N):
-        return N, black
 
 
 # --- the lobe of the facets ---

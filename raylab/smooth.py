@@ -10,17 +10,12 @@ from typing import NamedTuple
 
 from raylab import fresnel
 from raylab.brdf import reflect
-from raylab.record import record
+from raylab.record import methods_of, record
 from raylab.vec3 import Vec3, black, dot
 
 
-@record
-class Conductor(NamedTuple):
-    """A metal mirror: complex index eta + i k for each colour, times the colour `specular`."""
-
-    eta: Vec3
-    k: Vec3
-    specular: Vec3
+class Smooth:
+    """What mirrors and glass have in common."""
 
     def eval(self, V, L):
         return black
@@ -36,6 +31,16 @@ class Conductor(NamedTuple):
 
     def is_specular(self):
         return True
+
+
+@record
+@methods_of(Smooth)
+class Conductor(NamedTuple):
+    """A metal mirror: complex index eta + i k for each colour, times the colour `specular`."""
+
+    eta: Vec3
+    k: Vec3
+    specular: Vec3
 
     def reflection(self, V, N):
         return self.specular * fresnel.conductor(abs(dot(N, V)), self.eta, self.k)
@@ -45,6 +50,7 @@ class Conductor(NamedTuple):
 
 
 @record
+@methods_of(Smooth)
 class Dielectric(NamedTuple):
     """The boundary of glass seen from the side with the index n_i; eta = n_t / n_i.
 
@@ -54,21 +60,6 @@ class Dielectric(NamedTuple):
     eta: float
     specular: Vec3
     transmittance: Vec3
-
-    def eval(self, V, L):
-        return black
-
-    def sample(self, V, N, u):
-        return reflect(V, N), 1.0
-
-    def pdf(self, V, w, N):
-        return 0.0
-
-    def is_glossy(self):
-        return False
-
-    def is_specular(self):
-        return True
 
     def reflection(self, V, N):
         R, _, _ = fresnel.dielectric(abs(dot(N, V)), self.eta)

@@ -8,15 +8,13 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import Done
 
 import raylab
-from raylab import cli
 from raylab.progress import Bar
 from raylab.render import Progress
 
@@ -50,28 +48,6 @@ def scene(tmp_path) -> Path:
     path = tmp_path / "scene.xml"
     path.write_text(SCENE)
     return path
-
-
-@dataclass
-class Done:
-    """What a command left behind."""
-
-    code: int
-    stdout: str
-    stderr: str
-
-
-@pytest.fixture
-def run(monkeypatch, capsys) -> Callable[..., Done]:
-    """Run the command line in this process, which is fast."""
-
-    def call(*arguments: object) -> Done:
-        monkeypatch.setattr(sys, "argv", ["raylab", *map(str, arguments)])
-        with pytest.raises(SystemExit) as left:
-            cli.main()
-        return Done(left.value.code, *capsys.readouterr())
-
-    return call
 
 
 def run_process(*arguments: object) -> Done:

@@ -11,17 +11,14 @@ import os
 import numba
 import numpy as np
 import pytest
+import students
 
 from raylab import trials
 from raylab.errors import UserError
-from raylab.point import dist_sqr
-from raylab.sampling import PI, sample_cos_hemisphere, sample_hemisphere
-from raylab.shadow import shadow, shadow_toward
 from raylab.stats import Budget
 from raylab.strategies import BUILT_IN
 from raylab.testing import Examiner, Source
 from raylab.trials import CATALOGUE
-from raylab.vec3 import black, dot, normalize
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a hundred thousand samples each")
 EXAMINER = Examiner(Budget.replay(os.environ["RAYLAB_ENTROPY"]) if "RAYLAB_ENTROPY" in os.environ else Budget())
@@ -75,47 +72,13 @@ def test_built_in_shades_pass_at_one_percent(name, technique):
 # --- mistakes ---
 
 
-def without_shadow(x, k_d, N, scene, rng):
-    result = black
-    for light in scene.lights:
-        y, p_y = light.sample(x, rng.square())
-        L = normalize(y - x)
-        result += light.radiance * k_d * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n)) / dist_sqr(x, y) / p_y
-    return result
-
-
-def one_over_r(x, k_d, N, scene, rng):
-    result = black
-    for light in scene.lights:
-        y, p_y = light.sample(x, rng.square())
-        if not shadow(scene, x, y):
-            L = normalize(y - x)
-            result += light.radiance * k_d * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n)) / dist_sqr(x, y) ** 0.5 / p_y
-    return result
-
-
-def cosine_twice(x, k_d, N, scene, rng):
-    w = sample_cos_hemisphere(N, rng.square())
-    if shadow_toward(scene, x, w):
-        return black
-    return scene.environment.eval(w) * k_d * PI * dot(w, N)
-
-
-def half_the_hemisphere(x, k_d, N, scene, rng):
-    u = rng.square()
-    w = sample_hemisphere(N, (u[0], 0.5 * u[1]))
-    if shadow_toward(scene, x, w):
-        return black
-    return scene.environment.eval(w) * k_d * 2.0 * PI * dot(w, N)
-
-
 @pytest.mark.parametrize(
     ("technique", "shade", "trial"),
     [
-        ("area_diffuse", without_shadow, "polygons"),
-        ("area_diffuse", one_over_r, "polygons"),
-        ("env_cosine", cosine_twice, "gradient_sky"),
-        ("env_uniform", half_the_hemisphere, "gradient_sky"),
+        ("area_diffuse", students.without_shadow, "polygons"),
+        ("area_diffuse", students.one_over_r, "polygons"),
+        ("env_cosine", students.cosine_twice, "gradient_sky"),
+        ("env_uniform", students.half_the_hemisphere, "gradient_sky"),
     ],
 )
 def test_mistakes_fail(technique, shade, trial):

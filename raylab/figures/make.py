@@ -21,13 +21,14 @@ def figures(wanted: Sequence[Figure], folder: Path, step: Step) -> list[Path]:
     except OSError as error:
         raise UserError(f'cannot make the folder "{folder}": {error.strerror}') from None
     done: list[Path] = []
-    try:
-        for figure in wanted:
-            step(len(done), len(wanted), figure.name)
+    for figure in wanted:
+        step(len(done), len(wanted), figure.name)
+        try:
             done.append(figure.write(folder))
-        step(len(done), len(wanted), "done")
-    except KeyboardInterrupt:
-        pass
+        except KeyboardInterrupt:
+            step(len(done), len(wanted), "stopped by Ctrl-C")
+            return done
+    step(len(done), len(wanted), "done")
     return done
 
 
