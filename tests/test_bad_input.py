@@ -20,7 +20,7 @@ CASES = {  # line, body of the file from line 2 on, and what was expected or cam
     "focus 0": (4, thin_lens(LENS, "float focus_distance 0"), "must be greater than 0, got 0"),
     "focus -2": (4, thin_lens(LENS, "float focus_distance -2"), "must be greater than 0, got -2"),
     "reversed shutter": (
-        2,
+        5,
         thin_lens(LENS, SHUTTER, "float shutter_close 0.5"),
         "shutter_open is 1, shutter_close 0.5",
     ),

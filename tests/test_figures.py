@@ -106,6 +106,16 @@ def test_row_shows_pictures_pixel_for_pixel(tmp_path):
     np.testing.assert_array_equal(shown[34:94, 16:106], np.kron(255 * (pixels[..., 0] > 0), np.ones((3, 3))))
 
 
+def test_titles_and_notes_stay_over_and_under_their_picture(tmp_path):
+    from PIL import Image
+
+    words, grey = "one point on each of the lights", np.full((20, 60, 3), 0.5)
+    panels.row(tmp_path / "row.png", [panels.Panel(words, grey, words)] * 2)
+    shown = np.asarray(Image.open(tmp_path / "row.png").convert("L"))
+    frame = (shown[:4], shown[-4:], shown[:, :14], shown[:, 138:150], shown[:, -14:])
+    assert [part.min() for part in frame] == [255] * 5
+
+
 @pytest.mark.parametrize("name", ["ladder_area_brdf", "glossy_lobes", "mc_lobe_densities"])  # those without a render
 def test_a_figure_is_a_small_png_with_a_background_and_lines(name, tmp_path):
     from PIL import Image

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -92,15 +92,17 @@ def colours(place: npt.ArrayLike) -> Array:
 
 
 def row(path: Path, panels: Sequence[Panel], columns: int = 0, scale: int = 2) -> None:
-    """Write labelled pictures as a grid, `columns` in a line (default: all)."""
+    """Write labelled pictures as a grid, `columns` in a line (default: all); titles and notes wrap at its width."""
     import matplotlib
     from matplotlib.figure import Figure
 
+    panels = [replace(p, title=_wrapped(p, p.title, 16, scale), note=_wrapped(p, p.note, 14, scale)) for p in panels]
     columns = columns or len(panels)
     lines = -(-len(panels) // columns)
-    width = max(p.pixels.shape[1] for p in panels) * scale
-    height = max(p.pixels.shape[0] for p in panels) * scale
-    gap, above, below = 16, 34, 30 * max(1 + p.note.count("\n") if p.note else 0 for p in panels) + 6
+    width, height = (max(p.pixels.shape[axis] for p in panels) * scale for axis in (1, 0))
+    gap = 16
+    above = 8 + 26 * max(1 + p.title.count("\n") for p in panels)
+    below = 6 + 30 * max(1 + p.note.count("\n") if p.note else 0 for p in panels)
     full = np.array([columns * (width + gap) + gap, lines * (above + height + below)], float)
     with matplotlib.rc_context(rc=dict[Any, Any](STYLE)):
         drawn = Figure(figsize=tuple(full / DPI), dpi=DPI)
@@ -109,6 +111,25 @@ def row(path: Path, panels: Sequence[Panel], columns: int = 0, scale: int = 2) -
             top = (i // columns) * (above + height + below) + above
             _panel(drawn, panel, left, top, scale, full)
         _save(drawn, path)
+
+
+def _wrapped(panel: Panel, text: str, points: int, scale: int) -> str:
+    """The text with line breaks between words, so that no line is wider than the picture."""
+    from matplotlib.textpath import TextPath
+
+    def width(line: str) -> float:
+        return TextPath((0, 0), line, size=points).get_extents().width * DPI / 72.0
+
+    lines: list[str] = []
+    for given in text.split("\n"):
+        lines.append("")
+        for word in given.split(" "):
+            longer = f"{lines[-1]} {word}".strip()
+            if lines[-1] and width(longer) > scale * panel.pixels.shape[1]:
+                lines.append(word)
+            else:
+                lines[-1] = longer
+    return "\n".join(lines)
 
 
 def _panel(drawn: Any, panel: Panel, left: int, top: int, scale: int, full: Array) -> None:
