@@ -30,7 +30,7 @@ from numba.extending import (
     unbox,
 )
 
-from raylab.jit import OPTIONS, njit
+from raylab.jit import OPTIONS, interpreted, njit
 from raylab.view import View, ViewType
 
 T = TypeVar("T")
@@ -179,7 +179,9 @@ make_attribute_wrapper(TableType, "store", "store")
 @typeof_impl.register(Table)
 def _typeof(value, context):
     one_row = View(np.zeros((1, value.rows.array.shape[1])))
-    element = typeof_impl(value.cls.of(one_row, 0, value.store), context)
+    with interpreted():  # compiling `of` for this one call would take a second
+        one = value.cls.of(one_row, 0, value.store)
+    element = typeof_impl(one, context)
     return TableType(value.cls, element, typeof_impl(value.store, context))
 
 

@@ -16,8 +16,8 @@ ORDER = [
     "light_choice", "environment", "materials", "quadrics", "callbacks", "motion", "embree", "surface", "shadow",
     "shade", "beyond", "glossy", "direct", "basic", "lecture", "camera", "keyframes", "triangles", "geometry",
     "emitters", "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe",
-    "plain", "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "submission", "stats",
-    "study", "figures", "demo", "trials", "estimator_check", "estimator_watch", "metamorphic", "testing",
+    "plain", "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "stats",
+    "study", "figures", "demo", "trials", "submission", "estimator_check", "estimator_watch", "metamorphic", "testing",
     "pytest_plugin", "grading", "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}

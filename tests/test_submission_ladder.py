@@ -9,7 +9,7 @@ import pytest
 
 from raylab.probe import Probe
 from raylab.submission import Finding, Task, climb
-from raylab.submission.example import PLACE, example_scene
+from raylab.submission.example import examples
 
 DIFFUSE = Task("a1.diffuse", "shade", like="area_diffuse")
 SAMPLE = Task(
@@ -42,9 +42,9 @@ def test_a_correct_file_gives_functions_that_agree_with_raylab():
     heard: list[Finding] = []
     climbed = climb((HEAD + BOX + LIFTED).encode(), [DIFFUSE, SAMPLE], heard.append)
     assert climbed.findings == heard == []
-    scene = example_scene("area_diffuse")
-    ours = Probe(scene, "area_diffuse", PLACE, 1).sample(7, 50)
-    theirs = Probe(scene, climbed.functions["a1.diffuse"], PLACE, 1).sample(7, 50)
+    where = examples(DIFFUSE)[0]
+    ours = Probe(where.scene, "area_diffuse", where.place, 1).sample(7, 50)
+    theirs = Probe(where.scene, climbed.functions["a1.diffuse"], where.place, 1).sample(7, 50)
     np.testing.assert_allclose(theirs, ours, rtol=2.0**-48)
     rows = climbed.functions["a3.sample"](np.array([[0.0, 0.0, 1.0, 0.6, 0.25]]))
     np.testing.assert_allclose(rows[0, 2:], [0.6, 0.5 / np.pi], rtol=2.0**-50)

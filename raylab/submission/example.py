@@ -6,23 +6,50 @@ the horizon; a surface that is seen at an angle; colours that differ by channel.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
 from raylab import description as d
+from raylab.errors import UserError
 from raylab.probe import Place
 from raylab.scene import Scene
-from raylab.strategies import BUILT_IN, signature
+from raylab.strategies import BUILT_IN
 from raylab.submission.task import Task
 
 PLACE = Place.seen((0.9, -2.1, 1.7), (0.0, 0.0, 0.0))
 SAMPLES, ROWS, SEED = 32, 32, 4620
 
 
-def example_scene(like: str) -> Scene:
-    """A scene with the lights that the built-in shade() `like` is about; diffuse if it takes k_d."""
-    return _scene(BUILT_IN[like][1] or "area lights", "k_d" in signature(like))
+@dataclass(frozen=True, eq=False)
+class Example:
+    """A scene and where to look."""
+
+    scene: Scene
+    place: Place
+
+
+def examples(task: Task) -> list[Example]:
+    """Scenes to run in; the first one, the task's own trial if it has one, is also what is compiled for.
+
+    A kernel belongs to the kinds of things in a scene: one that is graded in such scenes is compiled but once.
+    """
+    own = [Example(_scene(needs, "k_d" in task.arguments), PLACE) for needs in _needs(task.like)]
+    return [_trial(task.trial), *own] if task.trial else own
+
+
+def _trial(name: str) -> Example:
+    from raylab import trials
+
+    made = trials.make(name, 0)
+    if not isinstance(made.place, Place):
+        raise UserError(f"trial {name!r} looks through a pixel; expected one at a point of a surface")
+    return Example(made.scene, made.place)
+
+
+def _needs(like: str) -> list[str]:
+    return (BUILT_IN[like][1] or "area lights").split(" or ")
 
 
 @cache

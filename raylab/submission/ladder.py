@@ -16,7 +16,7 @@ from raylab.jit import interpreted
 from raylab.plain import Plain
 from raylab.probe import Probe
 from raylab.submission.compile import Mapped, compile_shade, prepare
-from raylab.submission.example import PLACE, SAMPLES, SEED, example_rows, example_scene
+from raylab.submission.example import SAMPLES, SEED, example_rows, examples
 from raylab.submission.finding import Finding, Kind, Problem, Stage
 from raylab.submission.interpret import interpret_map, interpret_shade
 from raylab.submission.shape import ENTRY, check_shape
@@ -95,6 +95,7 @@ class _Ascent:
         self.function: Any = None
         self.stopped = False
         self.entry, self.values = "", np.zeros((0, 3))
+        self.examples = examples(task) if task.kind == "shade" else []
 
     def go(self, stages: Sequence[Stage], until: Stage) -> None:
         for stage in stages:
@@ -127,20 +128,22 @@ class _Ascent:
             with interpreted():
                 found, odd = interpret_map(self.source, self.task, function, example_rows(self.task))
         else:
-            found, odd = interpret_shade(self.source, self.task, function, self._plain(), SAMPLES)
+            every = [
+                interpret_shade(self.source, self.task, function, Plain(e.scene, e.place, SEED), SAMPLES)
+                for e in self.examples
+            ]
+            found, odd = every[0][0], _of_a_kind([problem for _, problems in every for problem in problems])
         self.values = np.array(found)
         for problem in odd:
             self.notes.add("interpret", self.task.id, problem)
-
-    def _plain(self) -> Plain:
-        return Plain(example_scene(self.task.like), PLACE, SEED)
 
     def _compile(self) -> None:
         compiled = prepare(self.source, self.task, self.entry)
         if self.task.kind == "map":
             self.function = Mapped(self.source, self.task, compiled)
         else:
-            compile_shade(self.source, self.task, compiled, self._plain())
+            first = self.examples[0]
+            compile_shade(self.source, self.task, compiled, Plain(first.scene, first.place, SEED))
             self.function = compiled
 
     def _cross_check(self) -> None:
@@ -148,7 +151,8 @@ class _Ascent:
             if self.task.kind == "map":
                 found = self.function(example_rows(self.task))
             else:
-                found = Probe(example_scene(self.task.like), self.function, PLACE, 1).sample(SEED, len(self.values))
+                first = self.examples[0]
+                found = Probe(first.scene, self.function, first.place, 1).sample(SEED, len(self.values))
         except Exception as error:
             raise Problem(
                 f"Compiled, `{self.task.function}` raises {type(error).__name__}: {error}, and in plain Python it does "
@@ -164,6 +168,11 @@ class _Ascent:
                 "Usually a variable that is not set on some way through the function, or an integer that overflows: "
                 "begin with floats (0.0).",
             )
+
+
+def _of_a_kind(problems: Sequence[Problem]) -> list[Problem]:
+    """The first problem of each line."""
+    return list({problem.line: problem for problem in reversed(problems)}.values())[::-1]
 
 
 def _shown(values: np.ndarray) -> str:

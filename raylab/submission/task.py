@@ -19,6 +19,7 @@ class Task:
     kind "shade": `function` is a shade() with the signature of the built-in one called `like`.
     kind "map": a plain function of `arguments`; `takes` says of each what it is, `gives` what comes back: "number",
     "pair" (a tuple of two numbers), "vector" (a Vec3). More than one result is a tuple.
+    `trial` is the kind of scene in which a shade() will be graded, a name of `raylab.trials`.
     `withheld` are words of `raylab.lecture` that would be the answer, and may not be used.
     """
 
@@ -29,6 +30,7 @@ class Task:
     arguments: tuple[str, ...] = ()
     takes: tuple[str, ...] = ()
     gives: tuple[str, ...] = ()
+    trial: str = ""
     withheld: tuple[str, ...] = ()
     examples: tuple[tuple[float, ...], ...] = ()  # rows of inputs for kind "map"; random ones where there are none
 
