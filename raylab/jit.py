@@ -49,11 +49,11 @@ class Compiled:
             function, targetoptions=options | {"nopython": True, "forceinline": True}, pipeline_class=_InnerCompiler
         )
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
         if Compiled.in_python:
-            return self.py_func(*arguments)
+            return self.py_func(*arguments, **named)
         # numba takes every Python int for 64 bits with a sign
-        return self._outer(*(np.uint64(a) if type(a) is int and a >= 1 << 63 else a for a in arguments))
+        return self._outer(*(np.uint64(a) if type(a) is int and a >= 1 << 63 else a for a in arguments), **named)
 
 
 class _InnerCompiler(Compiler):

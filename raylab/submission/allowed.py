@@ -29,7 +29,7 @@ ERRORS: dict[str, Any] = {
     e.__name__: e for e in (ArithmeticError, Exception, NotImplementedError, RuntimeError, ValueError)
 } | {"ZeroDivisionError": ZeroDivisionError, "AssertionError": AssertionError}  # fmt: skip
 NUMPY = _words("""
-    abs absolute add arccos arcsin arctan arctan2 array array_equal asarray ceil clip copy copysign cos cosh
+    abs absolute add arccos arcsin arctan arctan2 array array_equal asarray ceil copy copysign cos cosh
     cross cumsum deg2rad degrees dot e empty exp expm1 eye float32 float64 floor fmax fmin full hypot inf int32
     int64 isfinite isinf isnan linalg linspace log log10 log1p log2 max maximum mean min minimum multiply nan
     ones outer pi power prod rad2deg radians round sign sin sinh sqrt square subtract sum tan tanh uint64 vdot
@@ -40,7 +40,7 @@ LINALG = frozenset(("norm", "det", "inv", "solve"))
 ATTRIBUTES = _words("""
     x y z p n N w k_d k_s I radiance area sample pdf eval lobe sample_solid_angle pdf_solid_angle lights points
     suns environment present by_brightness number square is_glossy is_specular reflection refraction choice
-    choose shape size copy dot sum real T
+    choose shape size copy dot sum real T append
 """)  # fmt: skip
 _UNWRITTEN = ("typing", "collections.abc", "__future__", "raylab.jit", "numba")  # of no effect, and so welcome
 _OWN_SOLUTIONS = ("shade", "beyond", "glossy", "direct", "basic", "strategies", "")
@@ -93,11 +93,12 @@ def whole_module(module: str) -> Any:
 def member(owner: Any, name: str) -> Any:
     """The attribute of one of the modules above, or an Unavailable."""
     if owner is np and name == "random":
-        return Unavailable("np.random has a state of its own, so no sample could be repeated.", RANDOM)
+        return Unavailable("`np.random` has a state of its own, so no sample could be repeated.", RANDOM)
     listed = {np: NUMPY, np.linalg: LINALG, lecture: frozenset(lecture.__all__)}
     public = listed.get(owner) or frozenset(n for n in vars(math) if not n.startswith("_"))
     if name not in public:
-        return Unavailable(f"`{owner.__name__}.{name}` cannot be used in graded functions.", nearest(name, public))
+        advice = "Write min(max(a, 0.0), 1.0)." if name == "clip" else nearest(name, public)
+        return Unavailable(f"`{owner.__name__}.{name}` cannot be used in graded functions.", advice)
     return getattr(owner, name)
 
 
@@ -124,6 +125,7 @@ def permitted(value: Any) -> bool:
 
 
 _OBJECTS: list[Any] = [
+    slice, str,
     *BUILT_INS.values(), *ERRORS.values(), *(getattr(lecture, n) for n in lecture.__all__),
     *(getattr(np, n) for n in NUMPY), *(getattr(np.linalg, n) for n in LINALG),
     *(v for n, v in vars(math).items() if not n.startswith("_")),

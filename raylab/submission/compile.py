@@ -14,7 +14,7 @@ from typing import Any
 import numba
 import numpy as np
 import numpy.typing as npt
-from numba.core.errors import NumbaError, NumbaWarning
+from numba.core.errors import NumbaWarning
 
 from raylab.jit import OPTIONS, Compiled, entry_point
 from raylab.plain import Plain
@@ -34,7 +34,7 @@ Array = npt.NDArray[np.float64]
 
 def prepare(source: Source, task: Task, entry: str) -> Compiled:
     """The entry function of a task, to be compiled when its arguments are known; a Problem if the wall refuses."""
-    space = source.namespace(entry)
+    space = source.namespace(entry, silent=True)
     names = [*reachable(source, task.function), ENTRY]
     plain = [space[name] for name in names]
     with explained(source):
@@ -58,7 +58,7 @@ class explained:  # noqa: N801 (a context manager)
 
     def __exit__(self, kind: Any, error: BaseException | None, trace: types.TracebackType | None) -> None:
         self.quiet.__exit__(kind, error, trace)
-        if isinstance(error, NumbaError | NotImplementedError | AssertionError | KeyError):
+        if isinstance(error, Exception) and not isinstance(error, Problem):
             raise explain_compiler(error, self.source) from None
 
 
@@ -70,10 +70,7 @@ def compile_shade(source: Source, task: Task, compiled: Compiled, plain: Plain) 
         compiled.inner.compile(signature)
     returned = str(compiled.inner.overloads[signature].signature.return_type)
     if returned != "Vec3":
-        raise Problem(
-            f"Compiled, `{task.function}` returns {returned} instead of a colour (Vec3).",
-            "Return a Vec3 on each way through the function.",
-        )
+        raise explain_compiler(TypeError(f"returns {returned}"), source)
 
 
 class Mapped:

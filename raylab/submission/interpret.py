@@ -6,10 +6,11 @@ that a loop without end is stopped and named, and remembers the last one.
 
 from __future__ import annotations
 
+import io
 import math
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from types import FrameType
 from typing import Any
 
@@ -66,11 +67,11 @@ class Trace:
         return self._line
 
 
-def run(source: Source, task: Task, call: Callable[[], Any]) -> tuple[Any, int]:
+def run(source: Source, task: Task, call: Callable[[], Any], quiet: bool = True) -> tuple[Any, int]:
     """What `call` returns and the last line that ran; a Problem if it raises or does not end."""
-    trace = Trace()
+    trace, screen = Trace(), io.StringIO() if quiet else sys.stdout
     try:
-        with trace.watching(), np.errstate(divide="raise", invalid="raise"):
+        with redirect_stdout(screen), np.errstate(divide="raise", invalid="raise"), trace.watching():
             return call(), trace.last
     except NotImplementedError:
         raise unfinished(task.function, trace.last) from None
@@ -100,7 +101,7 @@ def interpret_shade(
     odd: dict[str, Problem] = {}
     before = plain.state()
     for number in range(samples):
-        value, last = run(source, task, lambda n=number: plain.call(shade, n))  # type: ignore[misc]
+        value, last = run(source, task, lambda n=number: plain.call(shade, n), number > 0)  # type: ignore[misc]
         if plain.state() != before:
             raise Problem(f"`{task.function}` changes its arguments.", "Make new values instead.", last)
         values.append(colour(task.function, value, last))
@@ -123,7 +124,7 @@ def colour(function: str, value: Any, line: int) -> list[float]:
         return [float(value.x), float(value.y), float(value.z)]
     if value is None:
         raise Problem(
-            f"`{function}` ends without `return`, the last line that ran is this one.",
+            f"`{function}` ends without `return`, after this line.",
             "Each way through the function must end with: return result", line,
         )  # fmt: skip
     raise Problem(
@@ -146,7 +147,7 @@ def _what(value: Any) -> str:
 def _nan(task: Task, call: Callable[[], Any], number: int, values: list[float]) -> Problem:
     """Say in which line the first value became infinite or not a number."""
     trace = Trace(is_nan)
-    with trace.watching():
+    with redirect_stdout(io.StringIO()), trace.watching():
         call()
     line, name = trace.first_wrong
     where = f"`{name}` becomes infinite or not a number" if name else f"`{task.function}` returns {values}"
@@ -174,7 +175,7 @@ def interpret_map(
     odd: dict[str, Problem] = {}
     for number, row in enumerate(rows):
         arguments = tuple(unpack(task.takes, row))
-        value, last = run(source, task, lambda a=arguments: function(*a))  # type: ignore[misc]
+        value, last = run(source, task, lambda a=arguments: function(*a), number > 0)  # type: ignore[misc]
         results[number] = flatten(task, value, last)
         if not np.isfinite(results[number]).all():
             odd.setdefault("nan", _nan(task, lambda a=arguments: function(*a), number, list(results[number])))  # type: ignore[misc]

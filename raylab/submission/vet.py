@@ -38,6 +38,7 @@ _REFUSED: dict[type, tuple[str, str]] = {
     ast.Set: ("Sets cannot be used in graded functions.", "Use tuples."),
     ast.SetComp: ("Sets cannot be used in graded functions.", "Use tuples."),
     ast.Delete: ("`del` cannot be used in graded functions.", "Leave the variable alone."),
+    ast.NamedExpr: ("`:=` cannot be compiled.", "Write the assignment on a line of its own."),
     ast.Match: ("`match` cannot be compiled.", "Write if and elif."),
 }  # fmt: skip
 
@@ -59,7 +60,7 @@ def vet(source: Source, task: Task) -> None:
     """Raise a Problem for the first thing, from top to bottom, that the task's function must not do."""
     problems = [p for name in reachable(source, task.function) for p in _Vet(source, task, name).problems()]
     if problems:
-        raise min(problems, key=lambda p: p.line)
+        raise min(problems, key=lambda p: (p.line, p.sentence.startswith("`.")))  # names before attributes
 
 
 class _Vet:
@@ -90,7 +91,9 @@ class _Vet:
         """The object that a name or a dotted name stands for; a local variable stands for None."""
         if isinstance(node, ast.Attribute):
             owner = self._named(node.value)
-            return allowed.member(owner, node.attr) if isinstance(owner, types.ModuleType) else owner and None
+            if isinstance(owner, types.ModuleType):
+                return allowed.member(owner, node.attr)
+            return owner if isinstance(owner, Unavailable) else None
         if not isinstance(node, ast.Name) or node.id in self.local or node.id in self.source.functions:
             return None
         for known in (self.source.names, allowed.BUILT_INS, allowed.ERRORS):

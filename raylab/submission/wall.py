@@ -25,7 +25,7 @@ def wall(function: Callable[..., Any], own: Callable[[Any], bool]) -> None:
             if isinstance(value, ir.Global | ir.FreeVar):
                 held[statement.target.name] = value.value
                 if not (own(value.value) or allowed.permitted(value.value)):
-                    raise Problem(f"`{value.name}` cannot be used in graded functions.", "", statement.loc.line)
+                    raise _refused(value)
             if isinstance(value, ir.Expr) and value.op == "getattr":
                 owner = held.get(value.value.name)
                 if isinstance(owner, types.ModuleType):
@@ -34,3 +34,11 @@ def wall(function: Callable[..., Any], own: Callable[[Any], bool]) -> None:
                         raise Problem(found.sentence, found.advice, statement.loc.line)
                 elif value.attr not in allowed.ATTRIBUTES:
                     raise Problem(f"`.{value.attr}` is not known here.", "", statement.loc.line)
+
+
+def _refused(named: Any) -> Problem:
+    if isinstance(named.value, Unavailable):
+        return Problem(named.value.sentence, named.value.advice, named.loc.line)
+    if named.value is ir.UNDEFINED:
+        return Problem(f"`{named.name}` is not defined.", "Check how it is written.", named.loc.line)
+    return Problem(f"`{named.name}` cannot be used in graded functions.", "", named.loc.line)
