@@ -1,4 +1,4 @@
-"""The command line: raylab render, study, shades, figures, demo.
+"""The command line: raylab render, study, shades, figures, demo; those of assignments are in `commands_*`.
 
 Standard output carries results, standard error everything else. Exit codes: 0 done, 2 bad input, 130 Ctrl-C.
 """
@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 import click
 
 import raylab
-from raylab import strategies
+from raylab import commands_student, strategies
 from raylab.errors import UserError
 from raylab.explain import explain, measured
 from raylab.image import Image
@@ -213,6 +213,10 @@ def demo_command(folder: Path, scenes: Path, threads: int | None) -> int:
     from raylab.demo import demo
 
     return 0 if demo(folder, scenes, threads) else INTERRUPTED
+
+
+for _command in commands_student.COMMANDS:
+    commands.add_command(_command)
 
 
 def _say(sentence: str) -> None:

@@ -38,7 +38,7 @@ def point_light(x, V, brdf, N, scene, rng):
     return result
 
 
-@njit
+@njit  # exercise a1.diffuse
 def area_diffuse(x, k_d, N, scene, rng):
     """Slide "Area source by Monte Carlo (diffuse)".
 
@@ -56,7 +56,7 @@ def area_diffuse(x, k_d, N, scene, rng):
     return result
 
 
-@njit
+@njit  # exercise a2.area
 def area(x, V, brdf, N, scene, rng):
     """Slide "Area source by Monte Carlo".
 
@@ -109,7 +109,7 @@ def directional_light(x, V, brdf, N, scene, rng):
     return result
 
 
-@njit
+@njit  # exercise a3.uniform
 def env_uniform(x, k_d, N, scene, rng):
     """Slide "Diffuse surface in env. by Monte Carlo": uniform hemisphere sampling, p(w) = 1 / (2 pi).
 
@@ -124,7 +124,7 @@ def env_uniform(x, k_d, N, scene, rng):
     return result
 
 
-@njit
+@njit  # exercise a3.cosine
 def env_cosine(x, k_d, N, scene, rng):
     """Slide "Diffuse surface in env. by Monte Carlo": cosine-proportional sampling, p(w) = cos(theta) / pi.
 
@@ -138,7 +138,7 @@ def env_cosine(x, k_d, N, scene, rng):
     return result
 
 
-@njit
+@njit  # exercise a4.brightness
 def env_brightness(x, V, brdf, N, scene, rng):
     """Slide "Arbitrary surface in env. by Monte Carlo": sampling by lighting environment, p(w) = L_i(w) / M.
 
@@ -154,7 +154,7 @@ def env_brightness(x, V, brdf, N, scene, rng):
     return result
 
 
-@njit
+@njit  # exercise a4.brdf
 def env_brdf(x, V, brdf, N, scene, rng):
     """Slide "Arbitrary surface in env. by Monte Carlo": sampling by BRDF, p(w) = f_r(v, w) / M(v).
 

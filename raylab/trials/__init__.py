@@ -9,6 +9,7 @@ partly hidden, some face away; so no mistake hides behind a symmetry or a factor
 - `skies`: a gradient, an image, a ball before the sky, glossy surfaces
 - `motion`: a light that rises, an edge that crosses a pixel
 - `lens`: a strip out of focus, through one pixel
+- `lessons`: what the assignments ask, one thing at a time
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 
 from raylab.errors import UserError
 from raylab.trials.lens import through_a_lens
+from raylab.trials.lessons import LESSONS
 from raylab.trials.lights import everything, glossy_polygons, points_and_suns, polygons, round_lights
 from raylab.trials.motion import crossing_edge, rising_light
 from raylab.trials.skies import ball_before_sky, glossy_gradient, glossy_sky, gradient_sky, image_sky
@@ -46,9 +48,10 @@ NAMES = tuple(CATALOGUE)
 
 def make(name: str, seed: int) -> Trial:
     """The trial called `name` with the numbers of `seed`; UserError if there is none of that name."""
-    if name not in CATALOGUE:
+    known = CATALOGUE | LESSONS
+    if name not in known:
         raise UserError(f"unknown trial {name!r}; expected one of {', '.join(NAMES)}")
-    return CATALOGUE[name](np.random.default_rng(seed))
+    return known[name](np.random.default_rng(seed))
 
 
-__all__ = ["CATALOGUE", "NAMES", "Answer", "Trial", "make"]
+__all__ = ["CATALOGUE", "LESSONS", "NAMES", "Answer", "Trial", "make"]

@@ -88,7 +88,7 @@ def polygons(rng: np.random.Generator) -> Trial:
     reflectance, turn = colour(rng), rng.uniform(0, 360)
     a, b = rng.uniform(0.25, 0.45), rng.uniform(0.2, 0.4)
     plane = facing(rng, rng.uniform(55, 70), turn, rng.uniform(1.0, 1.5), 20.0)
-    lamp, (screen, keep) = corners_in(plane, box(a, b)), _screen(rng, plane, a, b)
+    lamp, (screen, keep) = corners_in(plane, box(a, b)), screen_before(rng, plane, a, b)
     triangle = corners_in(
         facing(rng, rng.uniform(0, 12), turn + rng.uniform(120, 140), rng.uniform(1.1, 1.5), 20.0),
         [(0.5, 0.1), (-0.3, 0.45), (-0.2, -0.5)],
@@ -106,7 +106,7 @@ def polygons(rng: np.random.Generator) -> Trial:
     return stage("polygons", rng, answers, material=d.Diffuse(reflectance), shapes=shapes, view=unit(50, turn + 20))
 
 
-def _screen(rng: np.random.Generator, plane: Array, a: float, b: float) -> tuple[Array, tuple[Array, Array]]:
+def screen_before(rng: np.random.Generator, plane: Array, a: float, b: float) -> tuple[Array, tuple[Array, Array]]:
     """A screen about halfway to a rectangle of half edges a, b that hides its part beyond a slanted line.
 
     In the plane of the light the screen's shadow reaches from the line to a distance 3 a, far beyond the light.

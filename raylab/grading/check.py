@@ -1,0 +1,97 @@
+"""Check: the same properties on the student's own machine, in this process, with what there is to say said at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from raylab.errors import UserError
+from raylab.grading import report
+from raylab.grading.assignment import Assignment
+from raylab.grading.diagnosis import Diagnosis, by_samples, ranked
+from raylab.grading.intake import collect
+from raylab.grading.judge import Judge, Judged, refused
+from raylab.grading.source import InProcess, Interpreted
+from raylab.grading.table import PAIRED, SEED, TRIAL_SEED, Table, path_of
+from raylab.submission.ladder import climb
+from raylab.submission.shape import ENTRY, check_shape
+from raylab.submission.source import read
+from raylab.submission.task import Task
+
+Say = Callable[[str], None]
+
+
+def source_of(path: Path, assignment: Assignment) -> bytes:
+    """The bytes of the student's file, or of the one in a folder; UserError with a sentence."""
+    taken = collect(path, (path.name if path.is_file() else assignment.file,))
+    if taken.problems:
+        raise UserError("; ".join(taken.problems))
+    return next(iter(taken.files.values()))
+
+
+def in_python(source: bytes, task: Task) -> Any:
+    """The student's function, to be called in plain Python."""
+    parsed = read(source)
+    return parsed.namespace(check_shape(parsed, task)[0])[ENTRY]
+
+
+def table_of(assignment: Assignment, task: str) -> Table | None:
+    path = path_of(assignment.folder, task)
+    return Table.read(path) if path.is_file() else None
+
+
+def at_once(assignment: Assignment, source: bytes, task: Task) -> tuple[list[Diagnosis], str]:
+    """What the first samples say in plain Python, and a token for the first one that is not the reference's."""
+    import numpy as np
+
+    table = table_of(assignment, task.id)
+    if table is None or task.kind != "shade":
+        return [], ""
+    drawn = Interpreted({task.id: in_python(source, task)})
+    values = np.stack([drawn.samples(task.id, t, TRIAL_SEED, SEED, 0, PAIRED) for t in table.trials])
+    found = ranked(by_samples(table, values))
+    return found, first_different(table, values, task.id) if found else ""
+
+
+def first_different(table: Table, values: Any, task: str) -> str:
+    """The token of the first sample that differs from the reference's, for `raylab replay`."""
+    import numpy as np
+
+    with np.errstate(all="ignore"):
+        off = ~(np.abs(values - table.samples[0]) <= 1e-3 * np.abs(table.samples[0]) + 1e-12).all(axis=2)
+    if not off.any():
+        return ""
+    trial, number = np.argwhere(off)[0]
+    return f"{task}:{trial}:{number}"
+
+
+def check(assignment: Assignment, path: Path, say: Say, hint: int = 1, entropy: int | None = None) -> list[Judged]:
+    """Say what there is to say; the verdicts."""
+    source, tasks = source_of(path, assignment), assignment.tasks
+    early = climb(source, tasks, until="interpret")
+    for finding in early.findings:
+        say(str(finding))
+    stopped = {f.task for f in early.findings if f.fatal}
+    running = [task for task in tasks if task.id not in stopped and "" not in stopped]
+    for task in running:
+        found, token = at_once(assignment, source, task)
+        for sentence in report.causes(found, hint):
+            say(f"{task.id}: {sentence}")
+        if token:
+            say(f"    A sample to look at: raylab replay {token} {path}")
+    if running:
+        say(f"{', '.join(t.id for t in running)}: runs in plain Python; now it is compiled and judged ...")
+    climbed = climb(source, running, tell=lambda f: say(str(f)) if f.stage in ("compile", "cross-check") else None)
+    judge = Judge(assignment, InProcess(climbed.functions), entropy)
+    judged = []
+    for own in assignment.properties:
+        verdict = judge.judge(own) if own.task in climbed.functions else refused(own)
+        judged.append(verdict)
+    say("")
+    say(report.verdicts(judged))
+    score, points = report.total(judged)
+    say(f"\n{score:g} of {points:g} points, by the properties that are graded; the grader draws other random numbers.")
+    if hint < 3 and any(j.outcome == "FAIL" for j in judged):
+        say(f"More is said by: raylab check {assignment.id} {path} --hint {hint + 1}")
+    return judged

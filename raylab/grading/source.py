@@ -1,0 +1,85 @@
+"""Source: where the judge's numbers come from: a jail (`raylab.grading.session`), or this very process.
+
+samples(task, trial, trial_seed, seed, first, n) -> (n, 3)     of a shade()
+map(task, rows (n, k)) -> (n, m)                               of a plain function
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from raylab import trials
+from raylab.plain import Plain
+from raylab.probe import Draws, Place, Probe
+from raylab.trials import Trial
+
+Array = npt.NDArray[np.float64]
+
+
+class Source(Protocol):
+    """Bytes in, numbers out."""
+
+    def samples(self, task: str, trial: str, trial_seed: int, seed: int, first: int, n: int) -> Array: ...
+
+    def map(self, task: str, rows: npt.ArrayLike) -> Array: ...
+
+
+def plain_of(trial: Trial, seed: int) -> Plain:
+    """Where a shade() is called in plain Python."""
+    assert isinstance(trial.place, Place)
+    return Plain(trial.scene, trial.place, seed)
+
+
+class InProcess:
+    """Functions of this process, which are trusted."""
+
+    def __init__(self, functions: Mapping[str, Any]) -> None:
+        self.functions = functions
+        self._trials: dict[tuple[str, int], Trial] = {}
+
+    def trial(self, name: str, seed: int) -> Trial:
+        if (name, seed) not in self._trials:
+            self._trials[name, seed] = trials.make(name, seed)
+        return self._trials[name, seed]
+
+    def samples(self, task: str, trial: str, trial_seed: int, seed: int, first: int, n: int) -> Array:
+        made = self.trial(trial, trial_seed)
+        return Probe(made.scene, self.functions[task], made.place).sample(seed, n, first)
+
+    def map(self, task: str, rows: npt.ArrayLike) -> Array:
+        return np.asarray(self.functions[task](np.asarray(rows, np.float64)), np.float64)
+
+
+class Interpreted(InProcess):
+    """The same in plain Python: nothing to compile, for few samples of many functions."""
+
+    def samples(self, task: str, trial: str, trial_seed: int, seed: int, first: int, n: int) -> Array:
+        made = self.trial(trial, trial_seed)
+        called = plain_of(made, seed)
+        values = np.empty((n, 3))
+        for i in range(n):
+            try:
+                values[i] = tuple(called.call(self.functions[task], first + i))
+            except (ZeroDivisionError, ValueError, OverflowError):
+                values[i] = np.nan
+        return values
+
+    def map(self, task: str, rows: npt.ArrayLike) -> Array:
+        raise NotImplementedError
+
+
+class Asked:
+    """One task in one trial as something that draws: what a Probe is to the built-in functions."""
+
+    def __init__(self, source: Source, task: str, trial: str, trial_seed: int) -> None:
+        self.source, self.task, self.trial, self.trial_seed = source, task, trial, trial_seed
+
+    def sample(self, seed: int, n: int, first: int = 0) -> Array:
+        return self.source.samples(self.task, self.trial, self.trial_seed, seed, first, n)
+
+    def draws(self, seed: int, channel: int | None = None) -> Callable[[int], Array]:
+        return Draws(lambda first, n: self.sample(seed, n, first), channel)
