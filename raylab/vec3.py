@@ -187,9 +187,9 @@ def _overload_binary(op: Callable, vectors: Callable, vector_number: Callable | 
     def _(a, b):
         if _is_vec3(a) and _is_vec3(b):
             return vectors
-        if _is_vec3(a) and isinstance(b, types.Number):
+        if _is_vec3(a) and isinstance(b, types.Number | types.Boolean):
             return vector_number
-        if isinstance(a, types.Number) and _is_vec3(b):
+        if isinstance(a, types.Number | types.Boolean) and _is_vec3(b):
             return number_vector
 
 
