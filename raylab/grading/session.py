@@ -35,6 +35,16 @@ PACKAGE = Path(__file__).resolve().parents[1]
 SYSTEM = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/etc/ld.so.cache", "/sys/devices/system/cpu")
 WIDTH = {"number": 1, "pair": 2, "vector": 3}  # of what a plain function takes and gives
 KEYS = ("stage", "task", "kind", "line", "text", "sentence", "advice", "detail")  # of a finding
+ERRORS = {
+    "ZeroDivisionError": "the function divided by zero",
+    "IndexError": "the function used an index that is out of range",
+    "MemoryError": "the function asked for more memory than there is",
+    "OverflowError": "a number became too large",
+    "RecursionError": "the function called itself too often",
+    "LookupError": "the function could not be compiled",
+    "TypeError": "the function returned something else than it should",
+    "TypingError": "the function could not be compiled",
+}
 LONGEST = 4000  # characters of a text that a worker sends
 
 
@@ -224,8 +234,11 @@ def _plain(task: Task) -> Mapping[str, Any]:
 
 
 def _fault(words: Any, output: str) -> Fault:
-    sentence = words.get("sentence") if isinstance(words, dict) else None
-    return Fault("error", str(sentence or "the program failed")[:LONGEST], output)
+    """What went wrong, in our words: those of the program could tell what it was asked."""
+    if not isinstance(words, dict):
+        raise ProtocolError("no account of an error")
+    sentence = ERRORS.get(str(words.get("error")), "the function raised an error")
+    return Fault("error", sentence, f"{_short(words.get('error'))}: {_short(words.get('text'))}\n{output}")
 
 
 def _clean(reply: bytes) -> list[dict[str, Any]]:

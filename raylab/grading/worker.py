@@ -32,7 +32,8 @@ def serve(requests: int, replies: int, isolation: Words, ladder: str | None = No
             try:
                 answer = getattr(worker, words["do"])(words, blob)
             except Exception as error:  # of the student's code, or caused by it
-                _write(replies, pack_words(number, {"sentence": f"{type(error).__name__}: {error}"}, Kind.FAULT))
+                said = {"error": type(error).__name__, "text": str(error)[:4000]}
+                _write(replies, pack_words(number, said, Kind.FAULT))
                 continue
             if isinstance(answer, np.ndarray):
                 _write(replies, pack(number, Kind.NUMBERS, answer.astype("<f8").tobytes()))
