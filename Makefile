@@ -34,6 +34,7 @@ crosscheck: $(STAMP)  ## compare with Mitsuba 3, pixel by pixel (installs it)
 	$(BIN)/python -m pytest -m crosscheck
 
 certify: $(STAMP)  ## false alarms, power and planted mistakes of the tests: docs/certificate.md (goes on where it was stopped)
+	$(BIN)/python -m pytest -n 2 -m certify
 	PYTHONPATH=tests $(BIN)/python -m mutants.certify
 
 bench: $(STAMP)  ## measure the numbers of docs/performance.md on this machine

@@ -100,9 +100,8 @@ def _grade(
         finally:
             grading.isolation = session.isolation
         grading.results.output = told(grading.findings)
-        without = {
-            f["task"] or task.id for f in grading.findings for task in assignment.tasks if f["kind"] in NO_FUNCTION
-        }
+        fatal = {finding["task"] or "" for finding in grading.findings if finding["kind"] in NO_FUNCTION}
+        without = set(session.tasks) if "" in fatal else fatal
         judge = make_judge(assignment, session, grading.entropy)
         for test, own in zip(grading.results.tests, assignment.properties, strict=True):
             _judge_one(grading, test, own, judge, own.task in without)

@@ -13,9 +13,15 @@ def climb(source, tasks, **_):
     functions = {}
     for task in tasks:
         function = module.get(task["function"])
-        functions[task["id"]] = over_rows(function) if task["kind"] == "map" else function
+        functions[task["id"]] = over_rows(function, task.get("takes", [])) if task["kind"] == "map" else function
     return SimpleNamespace(findings=module.get("FINDINGS", []), functions=functions)
 
 
-def over_rows(function):
-    return lambda rows: np.array([function(*row) for row in rows])
+def over_rows(function, takes):
+    def each(row):
+        value = function(tuple(map(float, row))) if takes == ["pair"] else function(*map(float, row))
+        if type(value).__name__ == "Vec3":
+            return [value.x, value.y, value.z]
+        return [value] if isinstance(value, float) else value
+
+    return lambda rows: np.array([each(row) for row in rows])

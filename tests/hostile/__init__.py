@@ -1,0 +1,1 @@
+"""Hostile and broken submissions, numbered 1 to 64; an honest one would get 10 points."""
