@@ -25,14 +25,13 @@ def close(rules: dict[str, Any]) -> dict[str, Any]:
         sys.modules[name].__path__ = [str(place)]
     from raylab.grading import jail
 
-    record = jail.close(jail.Rules(**rules)).as_json()
-    for name in [name for name in sys.modules if name.split(".")[0] == "raylab"]:
-        del sys.modules[name]
-    return record
+    return jail.close(jail.Rules(**rules)).as_json()
 
 
 def import_raylab(folder: Path) -> None:
     """Import raylab out of this folder, wherever else there is one, and without a look at what stands beside it."""
+    for name in [name for name in sys.modules if name.split(".")[0] == "raylab"]:
+        del sys.modules[name]
     spec = spec_from_file_location("raylab", folder / "__init__.py", submodule_search_locations=[str(folder)])
     assert spec
     assert spec.loader
@@ -45,7 +44,8 @@ def main(order: dict[str, Any]) -> None:
     faulthandler.enable()  # a crash says in which line of Python
     sys.dont_write_bytecode = True
     sys.stdout.reconfigure(line_buffering=True, errors="replace")  # type: ignore[union-attr]
-    import_raylab(Path(order["library"]) / "raylab")
+    if not order["ladder"]:
+        import_raylab(Path(order["library"]) / "raylab")
     from raylab.grading.worker import serve
 
     serve(order["requests"], order["replies"], record, order["ladder"])

@@ -14,9 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from raylab import trials
 from raylab.grading.protocol import Kind, pack, pack_words, receive
-from raylab.probe import Probe
 
 Words = dict[str, Any]
 Climb = Callable[..., Any]
@@ -56,6 +54,8 @@ class Worker:
 
     def samples(self, words: Words, _: bytes) -> np.ndarray:
         """Of a shade() in a trial."""
+        from raylab.probe import Probe
+
         trial = _trial(words["trial"], words["trial_seed"])
         probe = Probe(trial.scene, self._function(words["task"]), trial.place, threads=1)
         return probe.sample(words["seed"], words["n"], words["first"])
@@ -76,6 +76,8 @@ class Worker:
 
 @lru_cache(maxsize=8)
 def _trial(name: str, seed: int) -> Any:
+    from raylab import trials
+
     return trials.make(name, seed)
 
 

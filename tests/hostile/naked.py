@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+import sys
+from collections import namedtuple
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
+
+sys.modules["raylab.lecture"] = lecture = ModuleType("raylab.lecture")  # the real one takes a second to import
+lecture.Vec3 = namedtuple("Vec3", "x y z")
 
 
 def climb(source, tasks, **_):
@@ -20,8 +25,6 @@ def climb(source, tasks, **_):
 def over_rows(function, takes):
     def each(row):
         value = function(tuple(map(float, row))) if takes == ["pair"] else function(*map(float, row))
-        if type(value).__name__ == "Vec3":
-            return [value.x, value.y, value.z]
         return [value] if isinstance(value, float) else value
 
     return lambda rows: np.array([each(row) for row in rows])

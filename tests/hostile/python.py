@@ -34,6 +34,10 @@ class Trick(float):
     __hash__ = None
 """
 EXPECTED = """
+import sys
+if "raylab.looked" in sys.modules:
+    raise ValueError
+sys.modules["raylab.looked"] = sys
 import gc, sys, inspect, linecache
 found = []
 frame = sys._getframe()
