@@ -42,7 +42,7 @@ def test_a_correct_file_gives_functions_that_agree_with_raylab():
     heard: list[Finding] = []
     climbed = climb((HEAD + BOX + LIFTED).encode(), [DIFFUSE, SAMPLE], heard.append)
     assert climbed.findings == heard == []
-    where = examples(DIFFUSE)[0]
+    where = next(examples(DIFFUSE))
     ours = Probe(where.scene, "area_diffuse", where.place, 1).sample(7, 50)
     theirs = Probe(where.scene, climbed.functions["a1.diffuse"], where.place, 1).sample(7, 50)
     np.testing.assert_allclose(theirs, ours, rtol=2.0**-48)

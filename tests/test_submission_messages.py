@@ -104,7 +104,7 @@ ROWS = [
 
 def compiler_says(source: str) -> Problem | None:
     """What comes of compiling without looking first."""
-    read_in, first = read(source.encode()), examples(TASK)[0]
+    read_in, first = read(source.encode()), next(examples(TASK))
     entry, _ = check_shape(read_in, TASK)
     try:
         compile_shade(read_in, TASK, prepare(read_in, TASK, entry), Plain(first.scene, first.place, SEED))

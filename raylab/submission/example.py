@@ -6,6 +6,7 @@ the horizon; a surface that is seen at an angle; colours that differ by channel.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
@@ -30,13 +31,16 @@ class Example:
     place: Place
 
 
-def examples(task: Task) -> list[Example]:
-    """Scenes to run in; the first one, the task's own trial if it has one, is also what is compiled for.
+def examples(task: Task) -> Iterator[Example]:
+    """Scenes to run in, made when they are asked for: the quick ones first, last the task's own trial if it has one.
 
-    A kernel belongs to the kinds of things in a scene: one that is graded in such scenes is compiled but once.
+    The last one is also what is compiled for. A kernel belongs to the kinds of things in a scene: one that is graded in
+    such scenes is compiled but once.
     """
-    own = [Example(_scene(needs, "k_d" in task.arguments), PLACE) for needs in _needs(task.like)]
-    return [_trial(task.trial), *own] if task.trial else own
+    for needs in (BUILT_IN[task.like][1] or "area lights").split(" or "):
+        yield Example(_scene(needs, "k_d" in task.arguments), PLACE)
+    if task.trial:
+        yield _trial(task.trial)
 
 
 def _trial(name: str) -> Example:
@@ -46,10 +50,6 @@ def _trial(name: str) -> Example:
     if not isinstance(made.place, Place):
         raise UserError(f"trial {name!r} looks through a pixel; expected one at a point of a surface")
     return Example(made.scene, made.place)
-
-
-def _needs(like: str) -> list[str]:
-    return (BUILT_IN[like][1] or "area lights").split(" or ")
 
 
 @cache

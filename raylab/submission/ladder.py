@@ -16,7 +16,7 @@ from raylab.jit import interpreted
 from raylab.plain import Plain
 from raylab.probe import Probe
 from raylab.submission.compile import Mapped, compile_shade, prepare
-from raylab.submission.example import SAMPLES, SEED, example_rows, examples
+from raylab.submission.example import SAMPLES, SEED, Example, example_rows, examples
 from raylab.submission.finding import Finding, Kind, Problem, Stage
 from raylab.submission.interpret import interpret_map, interpret_shade
 from raylab.submission.shape import ENTRY, check_shape
@@ -95,7 +95,7 @@ class _Ascent:
         self.function: Any = None
         self.stopped = False
         self.entry, self.values = "", np.zeros((0, 3))
-        self.examples = examples(task) if task.kind == "shade" else []
+        self.example: Example  # what is compiled for
 
     def go(self, stages: Sequence[Stage], until: Stage) -> None:
         for stage in stages:
@@ -128,13 +128,13 @@ class _Ascent:
             with interpreted():
                 found, odd = interpret_map(self.source, self.task, function, example_rows(self.task))
         else:
-            every = [
-                interpret_shade(self.source, self.task, function, Plain(e.scene, e.place, SEED), SAMPLES)
-                for e in self.examples
-            ]
-            found, odd = every[0][0], _of_a_kind([problem for _, problems in every for problem in problems])
+            odd = []
+            for example in examples(self.task):
+                self.example, plain = example, Plain(example.scene, example.place, SEED)
+                found, more = interpret_shade(self.source, self.task, function, plain, SAMPLES)
+                odd += more
         self.values = np.array(found)
-        for problem in odd:
+        for problem in _of_a_kind(odd):
             self.notes.add("interpret", self.task.id, problem)
 
     def _compile(self) -> None:
@@ -142,8 +142,7 @@ class _Ascent:
         if self.task.kind == "map":
             self.function = Mapped(self.source, self.task, compiled)
         else:
-            first = self.examples[0]
-            compile_shade(self.source, self.task, compiled, Plain(first.scene, first.place, SEED))
+            compile_shade(self.source, self.task, compiled, Plain(self.example.scene, self.example.place, SEED))
             self.function = compiled
 
     def _cross_check(self) -> None:
@@ -151,8 +150,8 @@ class _Ascent:
             if self.task.kind == "map":
                 found = self.function(example_rows(self.task))
             else:
-                first = self.examples[0]
-                found = Probe(first.scene, self.function, first.place, 1).sample(SEED, len(self.values))
+                probe = Probe(self.example.scene, self.function, self.example.place, 1)
+                found = probe.sample(SEED, len(self.values))
         except Exception as error:
             raise Problem(
                 f"Compiled, `{self.task.function}` raises {type(error).__name__}: {error}, and in plain Python it does "

@@ -28,7 +28,7 @@ def check_shape(source: Source, task: Task) -> tuple[str, list[tuple[int, str]]]
 def unfinished(name: str, line: int) -> Problem:
     """Not attempted: no fault, and no points."""
     return Problem(
-        f"`{name}` is not written yet.", "Replace the line that raises NotImplementedError by the slide's box.", line,
+        f"`{name}` is not written yet.", "Write the slide's box where the stub stands.", line,
         kind="unfinished",
     )  # fmt: skip
 

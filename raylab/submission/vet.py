@@ -30,6 +30,9 @@ _REFUSED: dict[type, tuple[str, str]] = {
     ast.Yield: ("`yield` cannot be used in graded functions.", "Add up in a for loop and return the sum."),
     ast.YieldFrom: ("`yield` cannot be used in graded functions.", "Add up in a for loop and return the sum."),
     ast.Await: ("`await` cannot be used in graded functions.", ""),
+    ast.AsyncFunctionDef: ("`async` cannot be used in graded functions.", "Write def."),
+    ast.AsyncFor: ("`async` cannot be used in graded functions.", "Write for."),
+    ast.AsyncWith: ("`async` cannot be used in graded functions.", ""),
     ast.GeneratorExp: (
         "A generator (... for ... in ...) cannot be compiled.", "Write a for loop that adds up: result += ...",
     ),
