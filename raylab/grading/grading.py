@@ -15,15 +15,20 @@ import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from raylab import __version__
-from raylab.grading import results
+from raylab.grading import hidden, results
+from raylab.grading.diagnosis import diagnose
 from raylab.grading.faults import Fault, GraderFault
 from raylab.grading.intake import collect
+from raylab.grading.judge import Judge
+from raylab.grading.report import as_dict
 from raylab.grading.results import Results, Test
 from raylab.grading.session import Limits, Session
+from raylab.grading.table import Table, path_of
 
 MakeJudge = Callable[[Any, Session, int], Any]
 NO_FUNCTION = ("error", "unfinished")  # kinds of findings after which a task has no function
@@ -67,11 +72,11 @@ def grade(
 
     def save() -> None:
         grading.results.execution_time = time.monotonic() - start
-        grading.results.extra_data = _record(grading, assignment, secret)
+        grading.results.extra_data |= _record(grading, assignment, secret)
         results.write(grading.results, where)
 
     try:
-        _grade(grading, assignment, submission, secret, limits, library, make_judge or _judge, ladder, save)
+        _grade(grading, assignment, submission, secret, limits, library, make_judge or Judge, ladder, save)
     except Exception as error:
         grading.results.not_graded = (
             "Your submission could not be graded. This is not your fault; the staff can see it."
@@ -103,30 +108,57 @@ def _grade(
         fatal = {finding["task"] or "" for finding in grading.findings if finding["kind"] in NO_FUNCTION}
         without = set(session.tasks) if "" in fatal else fatal
         judge = make_judge(assignment, session, grading.entropy)
-        for test, own in zip(grading.results.tests, assignment.properties, strict=True):
-            _judge_one(grading, test, own, judge, own.task in without)
-            save()
+
+        def judged(test: Test, own: Any) -> str:
+            try:
+                return _judge_one(grading, test, own, judge, own.task in without)
+            finally:
+                save()
+
+        pairs = zip(grading.results.tests, assignment.properties, strict=True)
+        grading.staff.append(hidden.run({own.id: partial(judged, test, own) for test, own in pairs}))
+        grading.results.extra_data["token"] = getattr(judge, "token", "")
+        _name_causes(grading, assignment, session)
         grading.staff.append(session.output)
 
 
-def _judge_one(grading: Grading, test: Test, own: Any, judge: Any, without: bool) -> None:
-    """Fill in one line of the rubric."""
+def _judge_one(grading: Grading, test: Test, own: Any, judge: Any, without: bool) -> str:
+    """Fill in one line of the rubric; what is wrong, if anything. Raises what the grader itself gets wrong."""
     if without:
         test.score, test.output = 0.0, "There is no function to test yet; see above."
-        return
+        test.extra_data = {"outcome": "NOT ATTEMPTED"}
+        return test.output
+    test.output = ""
     try:
         judged = judge.judge(own)
     except Fault as fault:
         test.score, test.output = 0.0, f"{own.says}\nWhen it was called, {fault.sentence}."
+        test.extra_data = {"outcome": "FAIL", "cause": fault.cause}
         grading.staff.append(f"{own.id}: {fault.cause}: {fault.detail}")
-    except Exception:
-        test.score, test.output = None, ""
-        grading.staff.append(f"{own.id}\n{traceback.format_exc()}")
-    else:
-        grading.judged.append(judged)
-        test.score = judged.score
-        test.output = "\n".join(text for text in (own.says, judged.seen) if text)
-        test.extra_data = {"outcome": judged.outcome, "p_value": judged.p_value, "samples": judged.samples}
+        return test.output
+    grading.judged.append(judged)
+    test.score = judged.score
+    test.output = "\n".join(text for text in (own.says, judged.seen) if text)
+    test.extra_data = {key: value for key, value in vars(judged).items() if key not in ("says", "score", "points")}
+    return test.output if test.status == "failed" else ""
+
+
+def _name_causes(grading: Grading, assignment: Any, session: Session) -> None:
+    """For each task with something wrong, what the mistake may be: a hint for the student, all of it for the staff."""
+    wrong = [judged.task for judged in grading.judged if judged.outcome == "FAIL"]
+    named: dict[str, Any] = {}
+    for task in dict.fromkeys(wrong):
+        path = path_of(assignment.folder, task)
+        if not path.is_file():
+            continue
+        try:
+            found = diagnose(Table.read(path), session, task)
+        except Fault:
+            continue
+        named[task] = as_dict(found)
+        if found:
+            grading.results.output = f"{grading.results.output}\n\n{task}: {found[0].hint(1)}".strip()
+    grading.results.extra_data["causes"] = named
 
 
 def _refuse(grading: Grading, why: str) -> None:
@@ -164,9 +196,3 @@ def _record(grading: Grading, assignment: Any, secret: bytes) -> dict[str, Any]:
         "raylab": __version__, "assignment": assignment.id, "source": hashlib.sha256(grading.source).hexdigest(),
         "commitment": commitment(secret), "isolation": grading.isolation,
     }  # fmt: skip
-
-
-def _judge(assignment: Any, session: Session, entropy: int) -> Any:
-    from raylab.grading.judge import Judge  # type: ignore[import-not-found]
-
-    return Judge(assignment, session, entropy)

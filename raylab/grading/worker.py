@@ -84,8 +84,8 @@ def _trial(name: str, seed: int) -> Any:
 def _climb_of(ladder: str | None) -> Climb:
     if ladder:
         return runpy.run_path(ladder)["climb"]
-    from raylab.submission.ladder import climb  # type: ignore[import-not-found]
-    from raylab.submission.task import Task  # type: ignore[import-not-found]
+    from raylab.submission.ladder import climb
+    from raylab.submission.task import Task
 
     return lambda source, tasks: climb(source, [Task.from_dict(task) for task in tasks])
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+
+from raylab.grading.judge import Judged
 
 WARP = {
     "id": "toy.warp", "function": "warp", "kind": "map", "arguments": ["u"], "takes": ["pair"], "gives": ["vector"],
@@ -52,7 +55,7 @@ class Property:
 
 
 ASSIGNMENT = SimpleNamespace(
-    id="toy", file="shade.py", tasks=(WARP, SQUARE),
+    id="toy", file="shade.py", folder=Path(__file__).parent, tasks=(WARP, SQUARE),
     properties=(
         Property("toy.warp", "right", 5.0, "The direction is uniform on the hemisphere."),
         Property("toy.warp", "pure", 3.0, "The same numbers give the same direction."),
@@ -81,10 +84,8 @@ class Judge:
             if own.name == "pure" and (asked == asked[0]).all():
                 good = False  # a constant says nothing
         outcome = "PASS" if good else "FAIL"
-        return SimpleNamespace(
-            outcome=outcome, score=own.points * good, seen="" if good else "It is not so.", p_value=None,
-            samples=len(asked),
-        )  # fmt: skip
+        seen = "" if good else "It is not so."
+        return Judged(own.task, own.name, outcome, own.points * good, own.points, own.says, seen, samples=len(asked))
 
 
 def directions(u):
