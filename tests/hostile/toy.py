@@ -81,7 +81,7 @@ class Judge:
             same = all(len({row.tobytes() for row in asked[self.order == i]}) == 1 for i in range(ROWS))
             right = np.allclose(asked, directions(self.u[self.order]), rtol=0.0, atol=1e-12)
             good = same if own.name == "pure" else right
-            if own.name == "pure" and (asked == asked[0]).all():
+            if own.name == "pure" and len({row.tobytes() for row in asked}) == 1:
                 good = False  # a constant says nothing
         outcome = "PASS" if good else "FAIL"
         seen = "" if good else "It is not so."
