@@ -21,8 +21,8 @@ figures: $(STAMP)  ## make every figure of docs/gallery.md
 	$(BIN)/python -m raylab.cli figures -o docs/figures --gallery docs/gallery.md
 
 test: $(STAMP) lint  ## all tests, compiled and in plain Python (under 12 minutes on two cores)
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not crosscheck and not certify"
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n 2 -m "not crosscheck and not certify" $(PLAIN)
+	$(BIN)/python -m pytest $(ON_TWO_CORES) -m "not crosscheck and not certify"
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest $(ON_TWO_CORES) -m "not crosscheck and not certify" $(PLAIN)
 
 lint: $(STAMP)  ## ruff and mypy
 	$(BIN)/ruff check raylab tests reference_scenes
@@ -47,6 +47,9 @@ docs: $(STAMP)  ## the documentation as HTML pages in docs/_build
 clean:  ## remove what the targets above have made
 	rm -rf .venv demo docs/_build build *.egg-info .pytest_cache .mypy_cache .ruff_cache
 
+# Each file runs on one core, so that its kernels are compiled once; tests/conftest.py says which files begin.
+ON_TWO_CORES := -n 2 --dist loadfile --no-loadscope-reorder
+
 # The test files that also run without the compiler: the same source in plain Python, at small sizes.
 PLAIN := $(addprefix tests/test_,$(addsuffix .py,twin vec3 record rng samplers sampling fresnel brdf lights environment \
-	quadrics camera materials geometry microfacet rough glossy basic))
+	image_environment quadrics camera materials geometry microfacet rough glossy basic))

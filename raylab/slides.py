@@ -223,14 +223,14 @@ TABLE = (
         ("raylab.sampling.pdf_hemisphere", "raylab.sampling.pdf_cos_hemisphere"),
         scene="ball_under_sky",
         figure="mc_sky_densities",
-        test="test_closed_form_renders.py::test_variance_under_a_sky",
+        test="test_closed_form_skies.py::test_variance_under_a_sky",
     ),
     Slide(
         "Diffuse surface in env. by Monte Carlo",
         ("raylab.shade.env_uniform", "raylab.shade.env_cosine"),
         scene="ball_under_sky",
         figure="mc_ball_under_sky",
-        test="test_closed_form_renders.py::test_gradient_sky",
+        test="test_closed_form_skies.py::test_gradient_sky",
     ),
     Slide(
         "Illumination as integration (any BRDF, over directions)",
@@ -252,7 +252,7 @@ TABLE = (
         "p proportional to the BRDF, and to the brightness",
         scene="hdr_sky",
         figure="mc_lobe_densities",
-        test="test_closed_form_renders.py::test_variance_of_a_lobe_of_exponent_20",
+        test="test_closed_form_skies.py::test_variance_of_a_lobe_of_exponent_20",
     ),
     Slide(
         "Arbitrary surface in env. by Monte Carlo",
@@ -260,7 +260,7 @@ TABLE = (
         "the captions of the two boxes are swapped on the slide",
         scene="hdr_sky",
         figure="errata_captions",
-        test="test_closed_form_renders.py::test_image_sky",
+        test="test_closed_form_skies.py::test_image_sky",
     ),
     Slide(
         "Creating glossy reflections",
@@ -298,7 +298,7 @@ TABLE = (
         "After the last slide (many lights)",
         ("raylab.beyond.one_light_uniform", "raylab.beyond.one_light_power", "raylab.light_choice.alias_table"),
         "one light for all",
-        scene="still_life",
+        scene="many_lights",
         figure="many_lights",
         test="test_mis.py::test_variance_of_one_light_of_two",
     ),

@@ -173,6 +173,39 @@ def setting_sun() -> None:
     write_obj(HERE / "light_below_horizon" / "light.obj", [(0, 0, 0), *rim], fan)
 
 
+# --- many lights ---
+
+LAMP_RADIUS, LAMP_HEIGHT = 0.04, 0.6
+LAMP_COLOURS = np.array(
+    [(1.0, 0.62, 0.25), (1.0, 0.85, 0.60), (0.35, 0.60, 1.0), (0.95, 0.30, 0.35), (0.40, 0.95, 0.55)]
+)
+
+
+def lamps(columns: int = 12, rows: int = 12) -> tuple[Array, Array]:
+    """Centres (n, 2) in x and z, and radiances (n, 3): a shaken grid, and Pareto's law of powers with exponent 1.6."""
+    i = np.arange(columns * rows)
+    u, v, w = (np.mod(0.5 + i * golden, 1.0) for golden in (0.8191725134, 0.6710436067, 0.5497004779))
+    x = 1.1 * (i % columns - 0.5 * (columns - 1) + 0.7 * (u - 0.5))
+    z = 1.1 * (i // columns - 0.5 * (rows - 1) + 0.7 * (v - 0.5)) - 1.5
+    power = 60.0 * (1.0 - 0.98 * w) ** (-1.0 / 1.6)
+    radiance = LAMP_COLOURS[(2 * i + 3 * (i // columns)) % len(LAMP_COLOURS)] * power[:, None]
+    return np.stack([x, z], axis=1).round(3), radiance.round(2)
+
+
+def garden() -> None:
+    """A disk for each lamp, which faces down; a line of the file each."""
+    lines = ["<!-- 144 lamps, by make_assets.py -->", '<scene version="3.0.0">']
+    for (x, z), radiance in zip(*lamps(), strict=True):
+        colour = ", ".join(f"{c:g}" for c in radiance)
+        lines.append(
+            '    <shape type="disk"><transform name="to_world">'
+            f'<scale value="{LAMP_RADIUS}"/><rotate x="1" angle="90"/>'
+            f'<translate x="{x:g}" y="{LAMP_HEIGHT}" z="{z:g}"/>'
+            f'</transform><emitter type="area"><rgb name="radiance" value="{colour}"/></emitter></shape>'
+        )
+    (HERE / "many_lights" / "lamps.xml").write_text("\n".join([*lines, "</scene>"]) + "\n", encoding="ascii")
+
+
 # --- textures ---
 
 
@@ -248,10 +281,11 @@ def main() -> None:
     cornell_box()
     meshes()
     setting_sun()
+    garden()
     textures()
     write_exr(HERE / "hdr_sky" / "sky.exr", {"": sky()}, {})
     for path in sorted(HERE.glob("*/*")):
-        if path.suffix in (".obj", ".ply", ".png", ".exr"):
+        if path.suffix in (".obj", ".ply", ".png", ".exr") or path.name == "lamps.xml":
             print(f"{path.relative_to(HERE)}: {path.stat().st_size} bytes")
 
 

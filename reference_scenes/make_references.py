@@ -37,7 +37,7 @@ Array = npt.NDArray[np.float64]
 Form = Callable[[Array, Array], Array]
 HERE = Path(__file__).parent
 SIZES = {"cornell_box": (96, 96), "soft_shadows": (120, 90), "hdr_sky": (120, 80), "veach_plates": (128, 96),
-         "mirror_balls": (60, 40)}  # fmt: skip
+         "mirror_balls": (60, 40), "many_lights": (90, 60)}  # fmt: skip
 SHADES = {"mirror_balls": "basic"}  # where it is not `direct`
 PICTURES = 16  # of which the spread is the standard error
 SAMPLES = 256  # of each picture

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import make_assets
 import numpy as np
 import numpy.typing as npt
 
@@ -141,6 +142,21 @@ def ball_under_sky(o: Array, d: Array) -> Array:
     return result
 
 
+def many_lights(o: Array, d: Array) -> Array:
+    """The sum over all lamps of the closed form for a disk parallel to the floor, averaged over each pixel"""
+    centres, radiances = make_assets.lamps()
+    radius, height = make_assets.LAMP_RADIUS, make_assets.LAMP_HEIGHT
+    _, above = plane(o, d, 1, height)
+    to_floor, x = plane(o, d, 1, 0.0)
+    on_floor = np.isfinite(to_floor) & (np.abs(x[:, 0]) <= 12.0) & (np.abs(x[:, 2]) <= 12.0)
+    behind_lamp = (np.hypot(*(above[:, None, [0, 2]] - centres).T) <= radius).any(axis=0)  # their backs are black
+    lit = on_floor & ~behind_lamp
+    offsets = np.hypot(*(x[lit][:, None, [0, 2]] - centres).T).T
+    result = np.zeros_like(x)
+    result[lit] = 0.6 / np.pi * forms.disk_parallel(radius, height, offsets) @ radiances
+    return result
+
+
 PICTURES: dict[str, Callable[[Array, Array], Array]] = {
     form.__name__: form
     for form in (
@@ -150,5 +166,6 @@ PICTURES: dict[str, Callable[[Array, Array], Array]] = {
         light_below_horizon,
         edge_occluder,
         ball_under_sky,
+        many_lights,
     )
 }

@@ -1,4 +1,4 @@
-"""What several test files ask pytest for: the command line."""
+"""What all tests have in common: their order, what needs the compiler, and the command line to run."""
 
 from __future__ import annotations
 
@@ -7,8 +7,25 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import pytest
+from helpers import COMPILED
 
 from raylab import cli
+
+# Files that take longest, longest first, so that in the end no worker is left with one of them.
+SLOW = (
+    "test_left_out", "test_mutants", "test_trials", "test_metamorphic", "test_closed_form_renders",
+    "test_closed_form_skies", "test_estimators", "test_motion_blur", "test_reference_scenes", "test_stats_sampler",
+    "test_study", "test_demo", "test_cli", "test_estimator_check", "test_figures",
+)  # fmt: skip
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Slow files first; without the compiler, tests marked `compiled` are left out."""
+    order = {name: place for place, name in enumerate(SLOW)}
+    items.sort(key=lambda item: order.get(item.path.stem, len(SLOW)))
+    if not COMPILED:
+        config.hook.pytest_deselected(items=[item for item in items if item.get_closest_marker("compiled")])
+        items[:] = [item for item in items if not item.get_closest_marker("compiled")]
 
 
 @dataclass

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from raylab import description as d
 from raylab.scene import Scene
@@ -53,3 +56,23 @@ def outdoors(environment: d.Environment, width: int = 16, material: d.Material =
         d.Cube(to_world=moved(0, 0, 0.5, 0.5, 0.5, 0.5), front=material, name="cube"),
     )
     return Scene(d.SceneDescription(camera=camera(width, fov), shapes=shapes, environment=environment))
+
+
+# --- motion ---
+
+
+def turned(degrees, axis=(0.0, 0.0, 1.0), offset=(0.0, 0.0, 0.0), size=(1.0, 1.0, 1.0)):
+    m = np.eye(4)
+    m[:3, :3] = Rotation.from_rotvec(np.radians(degrees) * np.array(axis)).as_matrix() * np.array(size)
+    m[:3, 3] = offset
+    return m
+
+
+def animation(*matrices, times=None):
+    return d.Animation(
+        np.linspace(0, 1, len(matrices)) if times is None else np.array(times, float), np.array(matrices)
+    )
+
+
+def shutter(eye, opened=0.0, closed=1.0):
+    return replace(eye, shutter_open=opened, shutter_close=closed)

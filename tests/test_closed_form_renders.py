@@ -1,9 +1,6 @@
-"""Every closed form of the lecture's light, rendered: each estimator that applies against the exact value.
+"""Every closed form of the lecture's lights, rendered: each estimator that applies against the exact value.
 
-One pixel looks at the origin of a little receiver from close by, through a pin-hole field of view; everything is
-turned and moved by one rigid motion, and colours differ by channel, so that no symmetry hides a mistake. Truths lie
-within 4.5 standard errors, from the exact variance where it is known. Scenes differ in numbers, not in the kinds of
-things they contain (lights of radiance zero and balls far away make up for what one lacks), so few kernels do.
+Truths lie within 4.5 standard errors, from the exact variance where it is known.
 """
 
 from __future__ import annotations
@@ -11,161 +8,48 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numba
 import numpy as np
 import pytest
+from receiver import (
+    CENTRED,
+    EDGE,
+    GEOMETRY,
+    LIGHT,
+    POSE,
+    RHO,
+    TRIANGLE,
+    UPRIGHT,
+    WHITE,
+    N,
+    Z,
+    affine,
+    agree,
+    check,
+    check_variance,
+    disk,
+    glossy,
+    half_plane,
+    lit,
+    mesh,
+    rectangle,
+    render,
+    sphere,
+    view_of,
+)
 from scipy import integrate
 
 import raylab
 from raylab import description as d
 from raylab.closed_forms import irradiance as forms
 from raylab.closed_forms import phong, variances
-from raylab.ladders import frame
 
-pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a quarter of a million samples each")
-
-SAMPLES = 1 << 18
-SIGMAS = 4.5
-# Embree's vertices are float32: up to 2^-24 of the extent of a scene, which is some ten times the distances that
-# count here; an irradiance changes four times as much at most (it goes with 1/r^2 and two cosines).
-GEOMETRY = 40 * 2.0**-24
-X, Y, Z = np.eye(3)
-N = np.array([0.48, 0.6, 0.64])
-RHO = np.array([0.2, 0.5, 0.8])
-WHITE = np.ones(3)
-LIGHT = np.array([1.0, 2.5, 0.5])
-
-
-def rotation(axis, degrees):
-    """Rodrigues' matrix about a unit axis."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = math.radians(degrees)
-    return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
-
-
-def affine(linear, offset=(0.0, 0.0, 0.0)):
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = linear, offset
-    return matrix
-
-
-POSE = affine(rotation(N, 77.0), (5.0, -3.0, 2.0))
-
-
-# --- scenes ---
-
-
-def mesh(*corners, radiance=None, **more):
-    """A fan over the corners; the side from which they run counterclockwise is the front."""
-    faces = np.array([[0, i, i + 1] for i in range(1, len(corners) - 1)])
-    return d.Mesh(vertices=np.array(corners, np.float64), faces=faces, radiance=radiance, **{"front": None, **more})
-
-
-def square(centre, n, half=(1.0, 1.0), **more):
-    """A rectangle with half edges along the first two rows of frame(n), and normal n."""
-    linear = frame(np.asarray(n, np.float64)).T @ np.diag([*half, 1.0])
-    return d.Rectangle(to_world=affine(linear, centre), **{"front": None, **more})
-
-
-def rectangle(corners, radiance):
-    """A rectangle light with these corners, its front to the side from which they run counterclockwise."""
-    centre, a, b = np.mean(corners, axis=0), (corners[1] - corners[0]) / 2.0, (corners[3] - corners[0]) / 2.0
-    linear = np.stack([a, b, np.cross(a, b)], axis=1)
-    return d.Rectangle(to_world=affine(linear, centre), radiance=radiance, front=None)
-
-
-def sphere(centre, radius, radiance=None, **more):
-    return d.Sphere(center=np.asarray(centre, np.float64), radius=radius, radiance=radiance, **{"front": None, **more})
-
-
-def disk(centre, n, radius, radiance):
-    return d.Disk(to_world=affine(frame(np.asarray(n, np.float64)).T * radius, centre), radiance=radiance, front=None)
-
-
-def scene(shapes, material=None, n=Z, view=None, lights=(), environment=None):
-    """One pixel over a receiver of half edge 0.01 at the origin, seen along -view."""
-    material = material or d.Diffuse(RHO)
-    view = np.asarray(n) + 0.4 * frame(np.asarray(n))[0] if view is None else np.asarray(view)
-    view = view / np.linalg.norm(view)
-    left, up, back = frame(view)
-    receiver = square((0.0, 0.0, 0.0), n, (0.01, 0.01), front=material)
-    camera = d.Camera(
-        to_world=POSE @ affine(np.stack([left, -up, -back], axis=1), 0.05 * view), fov=0.01, width=1, height=1
-    )
-    moved = tuple(replace(shape, to_world=POSE @ shape.to_world) for shape in (receiver, *shapes))
-    return raylab.Scene(
-        d.SceneDescription(camera=camera, shapes=moved, lights=lights, environment=environment, sampler="independent")
-    )
-
-
-DARK = np.zeros(3)
-BELOW = np.array([0.3, 0.2, -3.0])
-DARK_LIGHTS = (  # one of each kind that a scene with fewer kinds would be compiled without
-    mesh(BELOW, BELOW + X, BELOW + Y, radiance=DARK),
-    mesh(BELOW, BELOW + X, BELOW + X + Y, BELOW + Y, radiance=DARK),
-    square(BELOW, Z, radiance=DARK),
-    disk(BELOW, Z, 1.0, DARK),
-    sphere(BELOW, 0.5, DARK),
-)
-
-
-def lit(shapes, lights=(), **more):
-    """A scene of area, point and directional lights."""
-    dark = (
-        d.PointLight((POSE @ [*BELOW, 1.0])[:3], DARK),
-        d.DirectionalLight(np.array([1.0, 0.0, 0.0]), DARK),
-    )
-    return scene((*shapes, *DARK_LIGHTS), lights=(*lights, *dark), **more)
-
-
-# --- checks ---
-
-
-def check(image, truth, variance=None):
-    """The mean within SIGMAS standard errors of the truth; `variance` is the exact one of a sample, per channel."""
-    mean, truth = image.mean[0, 0], np.broadcast_to(np.asarray(truth, np.float64), 3)
-    count = image.samples[0, 0]
-    error = image.standard_error[0, 0] if variance is None else np.sqrt(np.asarray(variance) / count)
-    assert image.invalid_samples == 0
-    assert image.invalid_rays == 0
-    assert count == SAMPLES
-    deviation = np.abs(mean - truth)
-    assert np.all(deviation <= SIGMAS * error + GEOMETRY * truth), f"mean {mean}, truth {truth}, standard error {error}"
-
-
-def check_variance(image, variance, mean, largest):
-    """The sample variance against the exact one; samples lie in [0, largest].
-
-    Its relative standard error is sqrt((kurtosis - 1) / n), and kurtosis <= max(largest - mean, mean)^2 / variance.
-    """
-    kurtosis = max(largest - mean, mean) ** 2 / variance
-    measured = image.standard_error[0, 0, 0] ** 2 * SAMPLES
-    allowed = SIGMAS * math.sqrt((kurtosis - 1.0) / SAMPLES) + 2.0 * GEOMETRY
-    assert abs(measured / variance - 1.0) <= allowed, f"variance {measured}, exact {variance}, allowed {allowed:.2%}"
-
-
-def render(scene, shade, seed=1):
-    return raylab.render(scene, shade, spp=SAMPLES, seed=seed)
-
+pytestmark = pytest.mark.compiled(reason="a quarter of a million samples each")
 
 # --- area lights ---
 
-TRIANGLE = np.array([(0.1, 0.8, 0.7), (0.9, -0.1, 1.1), (-0.3, -0.5, 0.6)])
-CENTRED = np.array([(-1, 0.5, 1), (1, 0.5, 1), (1, -0.5, 1), (-1, -0.5, 1.0)])
 LOW = np.array([(-1, 0.9, 0.7), (1, 0.9, 0.7), (1, -0.5, 0.7), (-1, -0.5, 0.7)])
-UPRIGHT = np.array([(0.7, -0.5, -0.8), (0.7, -0.5, 0.6), (0.7, 0.5, 0.6), (0.7, 0.5, -0.8)])
-EDGE = forms.behind_edge((0.0, 0.0, 0.0), (0.1, 0.0, 0.5), (0.1, 1.0, 0.5), (-1.0, 0.0, 1.0))
 HEXAGON = np.array([(math.cos(t) - 0.2, 1.0, math.sin(t) + 0.1) for t in np.arange(6) * math.pi / 3])
 TILTED = np.array([0.6, 0.0, 0.8])
-
-
-def half_plane(x, y, along):
-    """A large square in z = 0.5 to the right of the line through (x, y) that runs `along`."""
-    along = np.array([*along, 0.0])
-    across = np.cross(along, Z)
-    corner = np.array([x, y, 0.5]) - 6.0 * along
-    return mesh(corner, corner + 9.0 * across, corner + 9.0 * across + 12.0 * along, corner + 12.0 * along)
 
 
 AREA = {  # shapes, normal, irradiance for radiance 1
@@ -313,135 +197,7 @@ def test_a_blocker_takes_lights_without_area_away():
         np.testing.assert_allclose(beside, open_sky, rtol=GEOMETRY)
 
 
-# --- environments ---
-
-SKIES = ["env_uniform", "env_cosine", "env_brightness", "env_brdf", "direct"]
-AWAY = sphere((0.0, 0.0, -9.0), 0.5)
-GRADIENT = np.array([(0.36, -0.24, 0.6), (0.1, 0.8, -0.3), (-0.2, 0.1, 0.3)])
-# From the coordinates of an image to those of `forms.texels`: pole +z, longitude from +x.
-TO_POLE = np.array([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-
-
-def sky_scene(environment, ball=AWAY, **more):
-    return scene([ball], environment=environment, **more)
-
-
-def gradient(a, rows):
-    """L(w) = a + rows . w before the rigid motion."""
-    return d.GradientEnvironment(np.asarray(a, np.float64), np.asarray(rows) @ POSE[:3, :3].T)
-
-
-def image_sky(pixels):
-    """Texels of constant radiance, the pole along +z before the rigid motion."""
-    return d.ImageEnvironment(np.asarray(pixels, np.float64), affine(POSE[:3, :3] @ TO_POLE), "nearest")
-
-
-@pytest.mark.parametrize("shade", SKIES)
-def test_constant_sky(shade):
-    check(render(sky_scene(d.ConstantEnvironment(LIGHT), n=N), shade), RHO * LIGHT)
-
-
-@pytest.mark.parametrize("shade", SKIES)
-def test_ball_before_a_constant_sky(shade):
-    truth = RHO / math.pi * LIGHT * forms.sphere_before_sky(1.0, 2.5, 0.8)
-    check(render(sky_scene(d.ConstantEnvironment(LIGHT), sphere((1.5, 0, 2), 1.0)), shade), truth)
-    truth = RHO / math.pi * LIGHT * forms.sphere_before_sky(1.0, 2.5, 0.2)
-    check(render(sky_scene(d.ConstantEnvironment(LIGHT), sphere((0, 6**0.5, 0.5), 1.0)), shade), truth)
-
-
-@pytest.mark.parametrize("shade", SKIES)
-def test_gradient_sky(shade):
-    a = np.array([1.1, 1.0, 0.5])
-    truth = RHO / math.pi * np.array([forms.gradient_sky(c, row, N) for c, row in zip(a, GRADIENT, strict=True)])
-    check(render(sky_scene(gradient(a, GRADIENT), n=N), shade), truth)
-
-
-@pytest.mark.parametrize("shade", SKIES)
-def test_image_sky(shade):
-    """Nine rows of 20 degrees, light in the upper three: E = sum L n . V while no lit texel meets the horizon of n."""
-    pixels = np.zeros((9, 16, 3))
-    pixels[:3] = np.random.default_rng(7).random((3, 16, 3)) ** 3
-    pixels[1, 5] = (40.0, 10.0, 20.0)
-    n = np.array([0.2, -0.3, math.sqrt(0.87)])  # 21 degrees off the pole
-    v, _ = forms.texels(9, 16)
-    truth = RHO / math.pi * np.einsum("ijc,ijk,k->c", pixels, v, n)
-    check(render(sky_scene(image_sky(pixels), n=n), shade), truth)
-
-
-CAP = np.zeros((9, 16, 3))
-CAP[0] = 1.0  # radiance 1 within 20 degrees of the pole
-ANGLE = math.radians(20.0)
-UPWARDS = 0.5 * np.array([Z, Z, Z])
-EXACT = {  # environment, exact variance, mean, largest sample: all for reflectance 1
-    ("constant", "env_uniform"): (variances.env_uniform_gradient(1.0, 0.0), 1.0, 2.0),
-    ("constant", "env_brightness"): (variances.env_uniform_gradient(1.0, 0.0), 1.0, 2.0),
-    ("gradient", "env_uniform"): (variances.env_uniform_gradient(1.1, 0.5), 1.1 + 1.0 / 3.0, 3.2),
-    ("gradient", "env_cosine"): (variances.env_cosine_gradient(0.5), 1.1 + 1.0 / 3.0, 1.6),
-    ("gradient", "env_brdf"): (variances.env_cosine_gradient(0.5), 1.1 + 1.0 / 3.0, 1.6),
-    ("gradient", "env_brightness"): (
-        variances.env_brightness_gradient_sphere(1.1, 0.5),
-        1.1 + 1.0 / 3.0,
-        4.4,
-    ),
-    ("cap", "env_uniform"): (variances.env_uniform_cap(ANGLE), math.sin(ANGLE) ** 2, 2.0),
-    ("cap", "env_cosine"): (variances.env_cosine_cap(ANGLE), math.sin(ANGLE) ** 2, 1.0),
-    ("cap", "env_brightness"): (
-        variances.cone_cap(ANGLE),
-        math.sin(ANGLE) ** 2,
-        4.0 * math.sin(ANGLE / 2.0) ** 2,
-    ),
-}
-
-
-@pytest.mark.parametrize(("kind", "shade"), EXACT)
-def test_variance_under_a_sky(kind, shade):
-    environment = {
-        "constant": d.ConstantEnvironment(WHITE),
-        "gradient": gradient(1.1 * WHITE, UPWARDS),
-        "cap": image_sky(CAP),
-    }[kind]
-    exact, mean, largest = EXACT[kind, shade]
-    image = render(sky_scene(environment, material=d.Diffuse(WHITE)), shade)
-    check(image, mean, exact)
-    check_variance(image, exact, mean, largest)
-
-
-@pytest.mark.parametrize("shade", ["env_cosine", "env_brdf"])
-def test_cosine_sampling_of_a_constant_sky_has_no_variance(shade):
-    image = render(sky_scene(d.ConstantEnvironment(LIGHT)), shade)
-    assert image.standard_error.max() <= 4 * 2.0**-53 * LIGHT.max()
-    np.testing.assert_allclose(image.mean[0, 0], RHO * LIGHT, rtol=SAMPLES * 2.0**-53)
-
-
 # --- Phong ---
-
-
-def glossy(exponent, specular=RHO, diffuse=DARK):
-    return d.Phong(diffuse_reflectance=diffuse, specular_reflectance=specular, exponent=exponent)
-
-
-def view_of(n, cosine):
-    """A view whose mirror direction has that cosine to n, and the mirror direction."""
-    s, _, n = frame(np.asarray(n))
-    sine = math.sqrt(1.0 - cosine**2)
-    return cosine * n + sine * s, cosine * n - sine * s
-
-
-@pytest.mark.parametrize("cosine", [1.0, 0.6, 0.3])
-@pytest.mark.parametrize("shade", ["env_brightness", "env_brdf", "direct"])
-def test_phong_under_a_constant_sky(shade, cosine):
-    view, _ = view_of(N, cosine)
-    material = glossy(10.0, 0.5 * RHO, 0.4 * RHO)
-    truth = LIGHT * RHO * (0.4 + 0.5 * phong.constant_sky(10, cosine))
-    check(render(sky_scene(d.ConstantEnvironment(LIGHT), material=material, n=N, view=view), shade), truth)
-
-
-@pytest.mark.parametrize("shade", ["env_brdf", "direct"])
-def test_phong_under_a_gradient_sky(shade):
-    """A mixture of 0.4 diffuse and 0.5 of a lobe of exponent 10 under 1.1 + 0.5 z, seen along the normal."""
-    material = glossy(10.0, 0.5 * RHO, 0.4 * RHO)
-    truth = RHO * (0.4 * (1.1 + 1.0 / 3.0) + 0.5 * phong.gradient_sky(10, 1.1, 0.5))
-    check(render(sky_scene(gradient(1.1 * WHITE, UPWARDS), material=material, view=Z), shade), truth)
 
 
 @pytest.mark.parametrize("exponent", [1, 7, 20])
@@ -452,38 +208,6 @@ def test_phong_under_a_polygon(shade, exponent):
         light = mesh(*corners, radiance=LIGHT) if len(corners) == 3 else rectangle(corners, LIGHT)
         truth = RHO * LIGHT * phong.polygon(corners, exponent, r)
         check(render(lit([light], material=glossy(exponent), view=view), shade), truth)
-
-
-@pytest.mark.parametrize("shade", ["env_brdf", "env_brightness"])
-def test_variance_of_a_lobe_of_exponent_20(shade):
-    """By itself 1 / ((n + 1)(n + 3)); by a uniform hemisphere, as constant skies are, (n + 2)^2 / (2 n + 3) - 1."""
-    known = {
-        "env_brdf": (variances.phong_brdf(20), 22.0 / 21.0),
-        "env_brightness": (variances.phong_uniform(20), 22.0),
-    }
-    exact, largest = known[shade]
-    image = render(sky_scene(d.ConstantEnvironment(WHITE), material=glossy(20.0, WHITE), view=Z), shade)
-    check(image, 1.0, exact)
-    check_variance(image, exact, 1.0, largest)
-
-
-# --- two estimators of one scene ---
-
-
-def agree(scene, first, second):
-    a, b = render(scene, first, seed=3), render(scene, second, seed=4)
-    error = np.hypot(a.standard_error, b.standard_error)
-    assert np.all(np.abs(a.mean - b.mean) <= SIGMAS * error), f"{first}: {a.mean}, {second}: {b.mean}, +- {error}"
-
-
-@pytest.mark.parametrize("shade", SKIES[1:])
-def test_estimators_agree_behind_a_ball_and_a_plate(shade):
-    """A lopsided sky behind a ball that the horizon cuts and a plate: no closed form."""
-    blocked = scene(
-        [sphere((0.6, 0.9, 0.7), 0.8), half_plane(-0.4, 0.0, (0, -1))],
-        environment=gradient([1.1, 1.0, 0.5], GRADIENT),
-    )
-    agree(blocked, "env_uniform", shade)
 
 
 def test_light_sampling_and_both_agree_on_a_glossy_surface():

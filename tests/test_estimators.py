@@ -36,7 +36,7 @@ from raylab.sampling import (
 )
 from raylab.vec3 import Vec3, black, cross, dot
 
-pytestmark = pytest.mark.skipif(not COMPILED, reason="a million samples each")
+pytestmark = pytest.mark.compiled(reason="a million samples each")
 SAMPLES, SIGMAS = 1_000_000, 4.0
 N = unit(0.2, -0.4, 0.6)
 WHITE = Vec3(1, 1, 1)

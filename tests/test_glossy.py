@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 import pytest
 from helpers import ALPHA, array, squares
@@ -25,7 +24,7 @@ from raylab.errors import UserError
 from raylab.sampling import pdf_phong_lobe, sample_phong_lobe
 from raylab.vec3 import Vec3
 
-compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="many samples")
+compiled = pytest.mark.compiled(reason="many samples")
 SAMPLES = 1 << 16
 K_S = np.array([0.2, 0.5, 0.8])
 N = Vec3(0.0, 0.0, 1.0)

@@ -12,8 +12,9 @@ PACKAGE = Path(__file__).parents[1] / "raylab"
 # The reading path, top to bottom; then what stands beside it.
 ORDER = [
     "_version", "errors", "description", "jit", "vec3", "view", "record", "pose", "rng", "samplers", "sampling",
-    "solid_angle", "mis", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point", "lights",
-    "light_choice", "environment", "materials", "quadrics", "callbacks", "motion", "embree", "surface", "shadow",
+    "solid_angle", "mis", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point",
+    "light_shapes", "lights", "light_choice",
+    "environment", "materials", "quadrics", "callbacks", "motion", "embree", "surface", "shadow",
     "shade", "beyond", "glossy", "direct", "basic", "lecture", "camera", "keyframes", "triangles", "geometry",
     "emitters", "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe",
     "plain", "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "stats",

@@ -22,7 +22,7 @@ from raylab.scene import FEATURES, Scene
 from raylab.strategies import strategy
 from raylab.view import View
 
-pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="looks at machine code")
+pytestmark = pytest.mark.compiled(reason="looks at machine code")
 
 
 def machine_code(scene: Scene, shade: str = "direct") -> str:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 
-import numba
 import numpy as np
 import pytest
 import students
@@ -22,7 +21,7 @@ from raylab.scene import Scene
 from raylab.stats import Budget
 from raylab.testing import Examiner
 
-pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a hundred thousand samples each")
+pytestmark = pytest.mark.compiled(reason="a hundred thousand samples each")
 TOKEN = os.environ.get("RAYLAB_ENTROPY")
 EXAMINER = Examiner(Budget.replay(TOKEN) if TOKEN else Budget(tests=1000))
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numba
 import numpy as np
 import pytest
 from helpers import ALPHA, U53, chi_square_p, size
-from scipy import integrate
-from test_closed_form_renders import (
+from receiver import (
     LIGHT,
     RHO,
     WHITE,
@@ -24,6 +22,7 @@ from test_closed_form_renders import (
     sky_scene,
     sphere,
 )  # fmt: skip
+from scipy import integrate
 
 import raylab
 from raylab import description as d
@@ -34,7 +33,7 @@ from raylab.jit import njit
 from raylab.ladders import frame
 from raylab.strategies import strategy
 
-compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a quarter of a million samples each")
+compiled = pytest.mark.compiled(reason="a quarter of a million samples each")
 DENSITIES = [0.0, 1e-300, 1e-160, 1e-20, 0.3, 1.0, 7.0, 1e20, 1e160, 1e300, math.inf]
 
 

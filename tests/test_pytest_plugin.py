@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import numba
 import pytest
 
 from raylab import trials
 
 pytest_plugins = ["pytester"]
-pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a hundred thousand samples each")
+pytestmark = pytest.mark.compiled(reason="a hundred thousand samples each")
 PAGE = Path(__file__).parents[1] / "docs" / "testing_estimators.md"
 HEAD = "from raylab.vec3 import Vec3\n"
 

@@ -14,7 +14,7 @@ from raylab.vec3 import Vec3, black, vec3_at
 from raylab.view import View, view_at
 
 MANY = size(5_000, 200)
-compiled_only = pytest.mark.skipif(not COMPILED, reason="about the compiler")
+compiled_only = pytest.mark.compiled(reason="about the compiler")
 
 
 @record

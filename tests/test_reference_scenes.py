@@ -7,7 +7,6 @@ import math
 import sys
 from pathlib import Path
 
-import numba
 import numpy as np
 import pytest
 from scipy import stats
@@ -24,7 +23,7 @@ ALPHA = 1e-6  # false alarms of each chi-square test; seeds are fixed
 SPP = 64
 VARIANCE_SAMPLES = 256  # behind the variances in a reference
 TILE = 8  # pixels along a side: 64 pixels x 64 samples make a mean that is close enough to normal
-compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="half a million samples each")
+compiled = pytest.mark.compiled(reason="half a million samples each")
 
 
 @pytest.fixture
@@ -177,10 +176,11 @@ def test_assets_are_what_the_script_makes(scripts, tmp_path, monkeypatch, capsys
     make_assets.main()
     made = [path.relative_to(tmp_path) for path in tmp_path.rglob("*.*")]
     kept = {p.relative_to(FOLDER) for p in FOLDER.rglob("*") if p.suffix in (".obj", ".ply", ".png", ".exr")}
+    kept |= {p.relative_to(FOLDER) for p in FOLDER.glob("*/*.xml") if p.name != "scene.xml"}
     assert set(made) == kept
     assert len(capsys.readouterr().out.splitlines()) == len(made)
     for file in made:
-        if file.suffix == ".obj":
+        if file.suffix in (".obj", ".xml"):
             assert (tmp_path / file).read_text() == (FOLDER / file).read_text()
         elif file.suffix == ".ply":
             for a, b in zip(read_mesh(tmp_path / file), read_mesh(FOLDER / file), strict=True):

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from helpers import COMPILED, U53, array, gauss, size
+from helpers import U53, array, gauss, size
 
 from raylab import fresnel, rough
 from raylab.brdf import reflect
@@ -77,7 +77,7 @@ def test_reciprocity(brdf):
         assert [*brdf.eval(V, L)] == pytest.approx([*brdf.eval(L, V)], rel=16 * U53)
 
 
-@pytest.mark.skipif(not COMPILED, reason="fifty thousand directions each")
+@pytest.mark.compiled(reason="fifty thousand directions each")
 @pytest.mark.parametrize("degrees", [0, 30, 60, 80, 88])
 @pytest.mark.parametrize("brdf", BRDFS)
 def test_no_more_is_reflected_than_arrives(brdf, degrees):
@@ -133,7 +133,7 @@ def normals_seen(facets, n, m):
     return np.stack([*(slopes * z), z], axis=-1), area * weight
 
 
-@pytest.mark.skipif(not COMPILED, reason="half a million facets")
+@pytest.mark.compiled(reason="half a million facets")
 @pytest.mark.parametrize(("kind", "alpha"), [(GGX, 0.1), (GGX, 0.5), (BECKMANN, 0.1), (BECKMANN, 0.5)])
 def test_the_table_is_the_share_of_light_that_passes_the_coat(kind, alpha):
     """T(cos) by quadrature over slopes instead of the sampler's square, with Fresnel's formulas by numpy."""
@@ -158,7 +158,7 @@ def test_the_table_is_the_share_of_light_that_passes_the_coat(kind, alpha):
     assert 0.0 < table.min() <= table.max() < 1.0
 
 
-@pytest.mark.skipif(not COMPILED, reason="a quarter of a million facets")
+@pytest.mark.compiled(reason="a quarter of a million facets")
 @pytest.mark.parametrize("kind", [GGX, BECKMANN])
 def test_a_smooth_coat_has_fresnel_s_transmittance(kind):
     """alpha -> 0: T = 1 - F from outside, and R is the mean of 2 F cos over the nodes inside."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import mpmath
-import numba
 import numpy as np
 import pytest
 from helpers import U53, array, composite, squares, unit
@@ -23,7 +22,7 @@ from raylab.point import curved_point, dist_sqr, free_point
 from raylab.vec3 import Vec3, black, dot, length, normalize
 
 PI = math.pi
-pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="sums over many points")
+pytestmark = pytest.mark.compiled(reason="sums over many points")
 ORIGIN = free_point(black)
 UP = Vec3(0.0, 0.0, 1.0)
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 
-import numba
 import numpy as np
 import pytest
 import students
@@ -20,7 +19,7 @@ from raylab.strategies import BUILT_IN
 from raylab.testing import Examiner, Source
 from raylab.trials import CATALOGUE
 
-pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="a hundred thousand samples each")
+pytestmark = pytest.mark.compiled(reason="a hundred thousand samples each")
 EXAMINER = Examiner(Budget.replay(os.environ["RAYLAB_ENTROPY"]) if "RAYLAB_ENTROPY" in os.environ else Budget())
 ALL = [(name, technique) for name in CATALOGUE for technique in trials.make(name, 0).answers]
 QUICK = {

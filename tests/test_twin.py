@@ -12,7 +12,6 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import numba
 import numpy as np
 import pytest
 from scenes import GLOSSY, camera, lamp, moved, outdoors, room
@@ -126,7 +125,7 @@ def test_plain_python_renders_every_kind_of_scene():
         assert max(picture) > 0, name
 
 
-@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="compares with a process that has no compiler")
+@pytest.mark.compiled(reason="compares with a process that has no compiler")
 def test_compiled_and_plain_python_agree():
     """To rounding: the compiler may fuse nothing, but the C library's sin and exp may differ in the last digit."""
     environment = dict(os.environ, NUMBA_DISABLE_JIT="1", PYTHONPATH=str(Path(__file__).parent))

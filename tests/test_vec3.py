@@ -143,7 +143,7 @@ def two(v):
     return v, v + v
 
 
-@pytest.mark.skipif(not COMPILED, reason="boxing is compiled code")
+@pytest.mark.compiled(reason="boxing is compiled code")
 def test_boxing_and_unboxing_leak_nothing():
     v = Vec3(1.5, 2.5, 3.5)
     through(v), two(v)
@@ -154,7 +154,7 @@ def test_boxing_and_unboxing_leak_nothing():
     assert np.all(held(Vec3, v, v.x) - before < MANY / 2)  # a leak would be MANY
 
 
-@pytest.mark.skipif(not COMPILED, reason="unboxing is compiled code")
+@pytest.mark.compiled(reason="unboxing is compiled code")
 def test_a_component_that_is_no_number_is_an_error():
     v = Vec3(1, 2, 3)
     v.y = "two"  # type: ignore[assignment]

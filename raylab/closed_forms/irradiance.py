@@ -106,13 +106,14 @@ def disk_coaxial(radius: float, height: float) -> float:
     return math.pi / (1.0 + (height / radius) ** 2)
 
 
-def disk_parallel(radius: float, height: float, offset: float) -> float:
+def disk_parallel(radius: float, height: float, offset: npt.ArrayLike) -> Array:
     """Disk whose axis passes x at the distance `offset`, parallel to the receiver.
 
     E = pi/2 [1 - (Z - 2 R^2) / sqrt(Z^2 - 4 R^2)], H = h/a, R = r/a, Z = 1 + H^2 + R^2. Source: Howell, section B.
     """
-    z = offset**2 + height**2 + radius**2  # all times a^2, so that offset 0 is allowed
-    return 0.5 * math.pi * (1.0 - (z - 2.0 * radius**2) / math.sqrt(z**2 - 4.0 * (radius * offset) ** 2))
+    square = np.asarray(offset, np.float64) ** 2
+    z = square + height**2 + radius**2  # all times a^2, so that offset 0 is allowed
+    return np.asarray(0.5 * math.pi * (1.0 - (z - 2.0 * radius**2) / np.sqrt(z**2 - 4.0 * radius**2 * square)))
 
 
 def disk_perpendicular(radius: float, distance: float, height: float) -> float:

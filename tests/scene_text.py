@@ -1,0 +1,46 @@
+"""Scene files of a few lines, and what is read from them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from raylab.description import (
+    Bitmap,
+    SceneDescription,
+)
+from raylab.io.mitsuba_xml import read
+
+EPS = np.finfo(float).eps
+SIX_DIGITS = 0.5e-5  # Mitsuba prints six significant digits
+SENSOR = '<sensor type="perspective"/>'
+
+
+def load(folder: Path, body: str, parameters: dict[str, str] | None = None, sensor: str = SENSOR) -> SceneDescription:
+    path = folder / "test.xml"
+    path.write_text(f'<scene version="3.0.0">\n<integrator type="direct"/>\n{sensor}\n{body}\n</scene>\n')
+    return read(path, parameters)
+
+
+def shape(folder: Path, body: str, kind: str = "rectangle") -> Any:
+    (result,) = load(folder, f'<shape type="{kind}">{body}</shape>').shapes
+    return result
+
+
+def matrix(folder: Path, operations: str) -> np.ndarray:
+    """The to_world that `operations` make."""
+    result: np.ndarray = shape(folder, f'<transform name="to_world">{operations}</transform>').to_world
+    return result
+
+
+def camera_scene(folder: Path, inside: str) -> SceneDescription:
+    return load(folder, "", sensor=f'<sensor type="perspective">{inside}</sensor>')
+
+
+def bitmap(folder: Path, inside: str = "", name: str = "t.exr") -> Bitmap:
+    texture = f'<texture type="bitmap" name="reflectance"><string name="filename" value="{name}"/>{inside}</texture>'
+    result = shape(folder, f'<bsdf type="diffuse">{texture}</bsdf>').front.reflectance
+    assert isinstance(result, Bitmap)
+    return result
