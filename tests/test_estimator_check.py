@@ -6,7 +6,9 @@ import pytest
 import students
 
 from raylab.estimator_check import KINDS, check
+from raylab.testing import Examiner
 
+EXAMINER = Examiner()
 PATIENCE = 120.0  # seconds: a machine may be busy with other things
 
 
@@ -27,16 +29,19 @@ PATIENCE = 120.0  # seconds: a machine may be busy with other things
         (students.raises, "error", "no_such_thing"),
     ],
 )
-def test_a_bad_estimator_is_named(shade, kind, seen):
-    findings = check(shade, "area_diffuse", "polygons", seed=3, seconds=PATIENCE)
-    assert [finding.kind for finding in findings] == [kind]
-    assert seen in findings[0].seen
-    assert str(findings[0]).startswith(KINDS[kind])
+def test_a_bad_estimator_is_named_in_the_verdict(shade, kind, seen):
+    report = EXAMINER.well_behaved("area_diffuse", shade, trial="polygons", seconds=PATIENCE)
+    assert report.outcome == "FAIL"
+    (finding,) = report.findings
+    assert finding.startswith(KINDS[kind])
+    assert seen in finding
+    assert finding in str(report)
 
 
 def test_one_that_never_returns_is_stopped():
-    (finding,) = check(students.never_returns, "area_diffuse", "polygons", seconds=3.0)
-    assert finding.kind == "time limit"
+    report = EXAMINER.well_behaved("area_diffuse", students.never_returns, trial="polygons", seconds=3.0)
+    assert report.outcome == "FAIL"
+    assert KINDS["time limit"] in str(report)
 
 
 def test_a_correct_one_is_left_in_peace():

@@ -12,7 +12,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2] / "raylab"
 NAMES = {  # what a mistake may need that its module has not
     "brdf": "from raylab.sampling import sample_hemisphere\n",
-    "shade": "from raylab.sampling import sample_sphere\nfrom raylab.vec3 import Vec3\n",
+    "shade": "import random\nfrom raylab.sampling import sample_sphere\nfrom raylab.vec3 import Vec3\nCALLS = []\n",
+    "camera": "from raylab.vec3 import length\n",
 }
 SHARED = ("vec3", "view", "record", "jit", "quadrics", "callbacks")  # behind a cache on disk, or the language itself
 
@@ -112,4 +113,12 @@ class _Finder(importlib.abc.MetaPathFinder):
 def bring_to_life(edits: tuple[Edit, ...]) -> None:
     """From now on `import raylab` imports the mutant; raylab must not have been imported before."""
     assert not any(name == "raylab" or name.startswith("raylab.") for name in sys.modules)
-    sys.meta_path.insert(0, _Finder(sources(edits)))
+    sys.meta_path.insert(0, _Finder(sources(edits) | {"raylab.jit": _without_cache()}))
+
+
+def _without_cache() -> str:
+    """A mutant must neither read machine code of the right kernels from the disk nor leave its own there."""
+    source, cached = (ROOT / "jit.py").read_text(), "numba.njit(cache=CACHE, **OPTIONS)"
+    if source.count(cached) != 1:
+        raise LookupError(f"jit: expected {cached!r} once: mutants must not share a cache with the right code")
+    return source.replace(cached, "numba.njit(**OPTIONS)")

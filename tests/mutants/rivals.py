@@ -46,8 +46,8 @@ def darts(x: Any, radiance: float) -> bool:
     return not abs(float(np.mean(x)) - 1.0) * radiance <= DARTS
 
 
-def judge(draws: Callable[[int], Any], variance: float | None, radiance: float) -> dict[str, bool]:
-    """What each of them would have said of these draws; Mitsuba needs the variance of the right code."""
-    x = draws(MITSUBA)
-    found = {"Nori": nori(x[:NORI]), "pbrt": pbrt(x[:PBRT]), "darts": darts(x[:NORI], radiance)}
+def judge(draws: Callable[[int], Any], variance: float | None, radiance: float, spp: int = 1) -> dict[str, bool]:
+    """What each would have said of draws, means of `spp` samples each; Mitsuba needs the variance of the right code."""
+    x = draws(MITSUBA // spp)
+    found = {"Nori": nori(x[: NORI // spp]), "pbrt": pbrt(x[: PBRT // spp]), "darts": darts(x[: NORI // spp], radiance)}
     return found if variance is None else found | {"Mitsuba": mitsuba(x, variance)}

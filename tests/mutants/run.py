@@ -29,63 +29,91 @@ from mutants.patch import Mutant, bring_to_life  # noqa: E402
 
 ALPHA = 3.3e-9
 PLAIN_CAP = {"trial": 8192, "loop": 16384, "map": 32768}  # without the compiler: about a second each
-IN_PYTHON = ("running mean", "unrelated")  # trials that put something of their own in place of a compiled part
 CAP = 1 << 23
 VARIANCES: dict[str, float] = {}  # of the right code by trial, which the parent fills in before it forks
 MAP_CAP = 500_000  # 250 / phi^2 for phi^2 = 5e-4: silence is a PASS there
 THEORY = {True: 4096, False: 200_000}  # independent samples from which the theory's prediction is made
 PATIENCE = 300  # seconds until a mutant "never returns"
+GREY = 0.5  # radiance of what is measured in units of its truth
+KINDS = {
+    "R": "range", "M": "mean", "V": "variance", "J": "Jacobian", "Q": "p of a sample is not pdf()",
+    "I": "integral of the pdf", "T": "ties", "P": "counts", "C": "correlation, 1/N", "D": "relation of scenes",
+    "W": "watched calls",
+}  # fmt: skip
 
 
 def run_one(name: str, plain: bool) -> dict[str, Any]:
-    """In the child: every test of every trial of this mutant, until one says FAIL."""
+    """In the child: every test of every trial of this mutant."""
     correct = name.startswith("correct:")
     mutant = Mutant(name, "the code as it is", name[8:], "=", ()) if correct else BY_NAME[name]
-    plain = plain or mutant.trial.startswith(IN_PYTHON)
+    plain = plain or mutant.trial.startswith("watch ")
     numba.core.config.DISABLE_JIT = int(plain)
     bring_to_life(mutant.edits)
     tests = []
-    for trial in mutant.trial.split("; "):
+    for trial in sorted(mutant.trial.split("; "), key=lambda t: not t.startswith(("map ", "picks "))):  # cheapest first
         tests += list(_tests(trial, plain, "V" in mutant.test or correct))
     return {"name": name, "plain": plain, "tests": tests}
 
 
 def _tests(name: str, plain: bool, variances: bool) -> Iterator[dict[str, Any]]:
-    if name.startswith("map "):
+    kind, _, rest = name.partition(" ")
+    if kind == "map":
         yield from _map(name, plain)
-        return
-    from mutants.loops import LOOPS
+    elif kind in ("relation", "watch", "picks", "shrinks", "unbiased", "brdf"):
+        from mutants import relations
 
-    if name in LOOPS:
-        yield from _loop(name, plain, variances, LOOPS[name]())
+        yield from getattr(relations, kind)(name, rest.split(" "))
     else:
-        yield from _trial(name, plain, variances)
+        from mutants.loops import LOOPS
+
+        if name in LOOPS:
+            yield from _loop(name, plain, variances, LOOPS[name]())
+        else:
+            yield from _trial(name, plain, variances)
 
 
 def _map(name: str, plain: bool) -> Iterator[dict[str, Any]]:
-    from mutants.maps import J_TOLERANCE, counts, jacobian, maps
+    from mutants.maps import examine, maps
 
-    made, start = maps()[name](), time.perf_counter()
-    worst = jacobian(made)
-    outcome = "PASS" if worst <= J_TOLERANCE else "FAIL"
-    yield {"trial": name, "test": "J", "outcome": outcome, "samples": 200, "seconds": time.perf_counter() - start,
-           "reason": f"pdf times Jacobian off by {worst:.2g}"}  # fmt: skip
+    made = maps()[name]()
+    for test, outcome, taken, seconds, seen in examine(made, PLAIN_CAP["map"] if plain else MAP_CAP, ALPHA):
+        outcome = "INCONCLUSIVE" if outcome == "PASS" and test == "P" and plain else outcome
+        yield {"trial": name, "test": test, "outcome": outcome, "samples": taken, "seconds": seconds, "reason": seen}
+    if not plain:
+        from mutants.chi_square import judge
+
+        yield _rivals(name) | judge(made.draws, made.pdf, made.chart, made.kind) | {"chi-square": True}
+
+
+def _rivals(name: str) -> dict[str, Any]:
+    return {"trial": name, "test": "rivals", "outcome": "", "samples": 0, "seconds": 0.0}
+
+
+def _alike(name: str, draws: Any) -> dict[str, Any]:
+    """T: no right estimator without atoms gives the same number five times in 4096."""
+    from mutants.maps import LOOK, SAME, most_alike
+
     start = time.perf_counter()
-    outcome, taken = counts(made, PLAIN_CAP["map"] if plain else MAP_CAP, ALPHA)
-    outcome = "INCONCLUSIVE" if outcome == "PASS" and plain else outcome
-    yield {"trial": name, "test": "P", "outcome": outcome, "samples": taken, "seconds": time.perf_counter() - start}
+    most = most_alike(draws(LOOK))
+    return {"trial": name, "test": "T", "outcome": "FAIL" if most >= SAME else "PASS", "samples": LOOK,
+            "seconds": time.perf_counter() - start, "reason": f"{most} of {LOOK} samples agree"}  # fmt: skip
 
 
 def _loop(name: str, plain: bool, variances: bool, loop: Any) -> Iterator[dict[str, Any]]:
     from raylab.stats import mean_is, variance_is
 
     cap = PLAIN_CAP["loop"] if plain else None
+    loop.draws(1)  # compiles
     kind = "C" if name.startswith("unrelated") else "M"
     bounds = {"low": loop.low, "high": loop.high, "alpha": ALPHA, "cap": cap}
     verdict = mean_is(name, loop.draws, loop.mean, delta=loop.delta, **bounds)
     yield _report(name, kind, verdict, loop.draws, loop.mean, loop.high, plain)
+    if not loop.atoms:
+        yield _alike(name, loop.draws)
     if variances and loop.variance is not None:
         yield _report(name, "V", variance_is(name, loop.draws, loop.variance, **bounds))
+    if not plain:
+        yield from _judged(name, loop.values or loop.draws, GREY, loop.spp)
 
 
 def _trial(name: str, plain: bool, variances: bool) -> Iterator[dict[str, Any]]:
@@ -99,14 +127,19 @@ def _trial(name: str, plain: bool, variances: bool) -> Iterator[dict[str, Any]]:
     compiling = time.perf_counter() - start
     cap = PLAIN_CAP["trial"] if plain else CAP
     yield _report(name, "M", check_mean(trial, draws, cap), draws, 1.0, trial.high, plain) | {"compiling": compiling}
+    if not trial.atoms:
+        yield _alike(name, lambda n: draws.raw(n)[:, 1])
     if variances and trial.variance is not None:
         yield _report(name, "V", check_variance(trial, draws, cap))
     if not plain:
-        from mutants.rivals import judge
+        yield from _judged(name, draws, float(np.mean(trial.truth)), 1)
 
-        found = judge(draws, VARIANCES.get(name), float(np.mean(trial.truth)))
-        spread = float(np.var(draws(THEORY[plain])))
-        yield {"trial": name, "test": "rivals", "outcome": "", "samples": 0, "seconds": 0.0, "variance": spread} | found
+
+def _judged(name: str, draws: Any, radiance: float, spp: int) -> Iterator[dict[str, Any]]:
+    from mutants.rivals import judge
+
+    found = judge(draws, VARIANCES.get(name), radiance, spp)
+    yield _rivals(name) | {"variance": float(np.var(draws(THEORY[False] // spp)))} | found
 
 
 def _report(
@@ -178,8 +211,10 @@ def _fork(name: str, plain: bool) -> tuple[int, int]:
     except BaseException:
         result = {"name": name, "plain": plain, "tests": [], "error": traceback.format_exc(limit=-3)}
     result["seconds"] = time.perf_counter() - start
-    os.write(writer, json.dumps(result).encode())
-    os._exit(0)
+    try:
+        os.write(writer, json.dumps(result).encode())
+    finally:
+        os._exit(0)  # never back into the parent's code
 
 
 def _collect(running: dict[int, Any]) -> Iterator[dict[str, Any]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -34,6 +34,7 @@ class Trial:
     lights: tuple[d.Light, ...] = ()
     view: Any = None
     variance: float | None = None  # of a sample, relative to the squared truth, where it is known
+    atoms: bool = False  # a right sample may have some value other than 0 again and again
 
 
 def unit(*v: float) -> np.ndarray:
@@ -176,6 +177,17 @@ def two_lights() -> Trial:
     return Trial("area_diffuse", leaving(truth), high, (rectangle(*RECT), rectangle(*second, radiance=bright * L)), n)
 
 
+def lights_by_power() -> Trial:
+    """Two rectangles, of which one is chosen: nine times in ten the brighter one."""
+    both = two_lights()
+    one, two = both.shapes
+    area, powers = (lambda s: 4.0 * float(np.prod(np.linalg.norm(s.to_world[:3, :2], axis=0)))), []
+    for shape in (one, two):
+        powers.append(area(shape) * float(shape.radiance[0]))
+    # a sample is at most the bound of one light over its share, and the sum of the bounds is known
+    return replace(both, shade="one_light_power", high=both.high * sum(powers) / min(powers))
+
+
 def triangle() -> Trial:
     corner, a, b = np.array([0.1, 0.8, 0.7]), np.array([0.8, -0.9, 0.4]), np.array([-0.4, -1.3, -0.1])
     n = np.array([0.0, 0.0, 1.0])
@@ -265,7 +277,8 @@ def blocked_sky(shade: str = "env_cosine") -> Trial:
     truth = float(irradiance.sphere_before_sky(radius, distance, float(to @ N1)))
     ball = d.Sphere(center=distance * to, radius=radius, front=None)
     high = {"env_cosine": math.pi, "env_uniform": 2.0 * math.pi}[shade]
-    return Trial(shade, leaving(truth), high / truth, (ball,), N1, environment=d.ConstantEnvironment(L))
+    sky = d.ConstantEnvironment(L)
+    return Trial(shade, leaving(truth), high / truth, (ball,), N1, environment=sky, atoms=shade == "env_cosine")
 
 
 def image_sky(filter: str = "nearest") -> Trial:
@@ -284,6 +297,12 @@ def image_sky(filter: str = "nearest") -> Trial:
     pixels = (values[..., None] * L).astype(np.float64)
     environment = d.ImageEnvironment(pixels, to_world, filter)
     return Trial("env_brightness", leaving(truth), high, _far_dark(), tilt, environment=environment)
+
+
+def image_breaks() -> dict[str, Any]:
+    """Where the texels of `image_sky` have their edges, about its pole."""
+    rows, columns = np.cos(np.pi * np.arange(1, 16) / 16), np.pi * (np.arange(1, 32) / 16 - 1.0)
+    return {"axis": (0.0, 0.0, 1.0), "rows": tuple(rows), "columns": tuple(columns)}
 
 
 def lobe_sky() -> Trial:
@@ -331,13 +350,13 @@ def combined(shade: str = "direct") -> Trial:
 def point() -> Trial:
     y = np.array([1.0, 0.7, 1.9])
     truth = RHO / math.pi * L * float(irradiance.point_light(y, n=N1))
-    return Trial("point_light", truth, 1.001, _far_dark(), N1, lights=(d.PointLight(y, L),))
+    return Trial("point_light", truth, 1.001, _far_dark(), N1, lights=(d.PointLight(y, L),), atoms=True)
 
 
 def sun() -> Trial:
     w = unit(0.6, -0.2, 0.8)
     truth = RHO / math.pi * L * float(irradiance.directional_light(w, N1))
-    return Trial("directional_light", truth, 1.001, _far_dark(), N1, lights=(d.DirectionalLight(-w, L),))
+    return Trial("directional_light", truth, 1.001, _far_dark(), N1, lights=(d.DirectionalLight(-w, L),), atoms=True)
 
 
 TRIALS: dict[str, Callable[[], Trial]] = {
@@ -351,6 +370,7 @@ TRIALS: dict[str, Callable[[], Trial]] = {
     "blocked, and one behind": lambda: blocked(behind=True),
     "blocked nearby": lambda: blocked(thin=True),
     "two lights": two_lights,
+    "lights by power": lights_by_power,
     "triangle": triangle,
     "disk": disk,
     "ball": ball,
@@ -366,5 +386,6 @@ TRIALS: dict[str, Callable[[], Trial]] = {
     "diffuse and lobe": mixture_sky,
     "two methods": combined,
     "point": point,
+    "point, directly": lambda: replace(point(), shade="direct"),
     "sun": sun,
 }
