@@ -99,3 +99,50 @@ def test_tasks_are_read_from_tables():
         Task.from_dict({"id": "a", "colour": 1})
     with pytest.raises(ValueError, match="expected one of"):
         Task("a", "shade", like="area_difuse")
+
+
+ROW = Task("map", "f", kind="map", arguments=("a",), takes=("number",), gives=("number",), examples=((0.25,), (0.75,)))
+
+
+def climbed(body: str) -> list[Finding]:
+    return climb((IMPORTS + "def f(a):\n" + body).encode(), [ROW]).findings
+
+
+def test_python_and_the_compiler_must_agree():
+    (finding,) = climbed("    i = 10\n    for k in range(19):\n        i = i * 10\n    return a * i\n")
+    assert finding.stage == "cross-check"
+    assert finding.kind == "error"
+    assert "sample 0 is (2.5e+19) and (" in finding.sentence
+    assert climbed("    i = 10.0\n    for k in range(19):\n        i = i * 10\n    return a * i\n") == []
+
+
+def test_a_variable_without_a_value_on_some_way_is_remarked():
+    """No sample goes that way: Python cannot know."""
+    (finding,) = climbed("    if a < 2.0:\n        b = a\n    return b\n")
+    assert (finding.stage, finding.kind, finding.line) == ("compile", "note", 9)
+    assert "`b` may have no value here" in finding.sentence
+
+
+def test_windows_and_tabs_are_welcome():
+    source = "\ufeffdef f(a):\n\tb = a\n\treturn b\n".replace("\n", "\r\n")
+    assert climb(source.encode(), [ROW], until="interpret").findings == []
+
+
+@pytest.mark.parametrize(
+    ("source", "line", "words"),
+    [
+        ("from raylab.lecture import *\ndef f(a):\n    b = length(N)\n    return b\n", 3, "`N` is not defined"),
+        ("def f(a):\n    return g(a)\ndef g(a):\n    return f(a)\n", 2, "`f` calls itself, by way of `g`"),
+        ("from raylab.vec3 import *\ndef f(a):\n    dot = dot(a)\n    return dot\n", 3, "is a function, and line 3"),
+        ("def f(a):\n    max = max(a, 0.0)\n    return max\n", 2, "is a function, and line 2"),
+        ("from raylab.lecture import distSqr\ndef f(a):\n    return distSqr(a, a)\n", 3, "not among the words"),
+        ("def f(a):\n    return\n", 1, "not written yet"),
+        ("def f(a):\n    return a, a\n", 2, "a tuple of 2 where a number is expected"),
+        ("def f(a):\n    return 'x'\n", 2, "a text where a number is expected"),
+        ("def f(a):\n    return a / (a - a)\n", 2, "divides by zero"),
+    ],
+)  # fmt: skip
+def test_a_map_gets_its_sentences_too(source, line, words):
+    findings = climb(source.encode(), [ROW], until="interpret").findings
+    assert [(f.line, f.kind in ("error", "unfinished")) for f in findings] == [(line, True)]
+    assert words in findings[0].sentence

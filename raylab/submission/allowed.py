@@ -43,7 +43,7 @@ ATTRIBUTES = _words("""
     choose shape size copy dot sum real T append
 """)  # fmt: skip
 _UNWRITTEN = ("typing", "collections.abc", "__future__", "raylab.jit", "numba")  # of no effect, and so welcome
-_OWN_SOLUTIONS = ("shade", "beyond", "glossy", "direct", "basic", "strategies", "")
+OWN_SOLUTIONS = ("shade", "beyond", "glossy", "direct", "basic", "strategies", "")
 
 
 @dataclass(frozen=True)
@@ -66,9 +66,10 @@ def from_import(module: str, name: str) -> Any:
     if module.split(".")[0] == "raylab":
         if module != "raylab" and name in lecture.__all__:
             return getattr(lecture, name)
-        if module.removeprefix("raylab").removeprefix(".") in _OWN_SOLUTIONS:
+        if module.removeprefix("raylab").removeprefix(".") in OWN_SOLUTIONS:
             return Unavailable(f"`{name}` of {module} is raylab's own and would be the answer.", _IN_LECTURE)
-        return Unavailable(f"`{name}` of {module} is not among the words of raylab.lecture.", _IN_LECTURE)
+        close = nearest(name, lecture.__all__)
+        return Unavailable(f"`{name}` of {module} is not among the words of raylab.lecture.", close or _IN_LECTURE)
     if module in ("math", "numpy", "numpy.linalg"):
         owner = {"math": math, "numpy": np, "numpy.linalg": np.linalg}[module]
         return member(owner, name)

@@ -24,7 +24,7 @@ from raylab.submission.shape import ENTRY
 from raylab.submission.source import Source
 from raylab.submission.task import WIDTHS, Task
 from raylab.submission.vet import reachable
-from raylab.submission.wall import wall
+from raylab.submission.wall import may_be_unset, wall
 from raylab.vec3 import Vec3
 from raylab.view import View
 
@@ -43,6 +43,19 @@ def prepare(source: Source, task: Task, entry: str) -> Compiled:
     for name in names:
         space[name] = Compiled(space[name], STUDENT)
     return space[ENTRY]
+
+
+def unset(source: Source, task: Task) -> list[Problem]:
+    """Variables that Python would miss on some way through the functions, and the compiler takes for 0."""
+    space = source.namespace(silent=True)
+    found = [pair for name in reachable(source, task.function) for pair in may_be_unset(space[name])]
+    return [
+        Problem(
+            f"`{name}` may have no value here: not all ways through the function give it one.",
+            "If so, Python stops and compiled code takes it for 0. Give it a value first.", line, kind="note",
+        )
+        for line, name in found
+    ]  # fmt: skip
 
 
 class explained:  # noqa: N801 (a context manager)

@@ -22,6 +22,7 @@ from raylab.submission.messages import explain_python
 from raylab.submission.shape import unfinished
 from raylab.submission.source import FILE, Source
 from raylab.submission.task import Task
+from raylab.submission.words import in_words
 from raylab.vec3 import Vec3
 
 STEPS = 1_000_000  # of the interpreter in the student's file, in one sample: about a second
@@ -141,7 +142,7 @@ def _what(value: Any) -> str:
         return f"an array of shape {value.shape}"
     if isinstance(value, tuple | list):
         return f"a {type(value).__name__} of {len(value)}"
-    return f"a {type(value).__name__}"
+    return in_words(type(value).__name__)
 
 
 def _nan(task: Task, call: Callable[[], Any], number: int, values: list[float]) -> Problem:

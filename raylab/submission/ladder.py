@@ -15,7 +15,7 @@ import numpy as np
 from raylab.jit import interpreted
 from raylab.plain import Plain
 from raylab.probe import Probe
-from raylab.submission.compile import Mapped, compile_shade, prepare
+from raylab.submission.compile import Mapped, compile_shade, prepare, unset
 from raylab.submission.example import SAMPLES, SEED, Example, example_rows, examples
 from raylab.submission.finding import Finding, Kind, Problem, Stage
 from raylab.submission.interpret import interpret_map, interpret_shade
@@ -139,6 +139,8 @@ class _Ascent:
 
     def _compile(self) -> None:
         compiled = prepare(self.source, self.task, self.entry)
+        for problem in unset(self.source, self.task):
+            self.notes.add("compile", self.task.id, problem)
         if self.task.kind == "map":
             self.function = Mapped(self.source, self.task, compiled)
         else:

@@ -11,6 +11,7 @@ import ast
 import re
 from typing import Any
 
+from raylab.submission import allowed
 from raylab.submission.finding import Problem
 from raylab.submission.source import FILE, Source
 from raylab.submission.words import PYTHON, Row, in_words, parts_of
@@ -95,7 +96,16 @@ def explain_python(error: Exception, source: Source, line: int) -> Problem:
     """An exception of the function in plain Python."""
     raw = f"{type(error).__name__}: {error}"
     sentence, advice = _look_up(PYTHON, raw, source) or (f"This line raises {raw}.", "")
+    name = getattr(error, "name", None) or "".join(re.findall(r"local variable '(\w+)'", raw))
+    if isinstance(error, UnboundLocalError) and _is_word(name, source):
+        lines = " and ".join(str(n) for n in _lines_of(source, name))
+        sentence = f"`{name}` is a function, and line {lines} makes a variable of that name."
+        advice = f"Call the variable something else, such as {name}_1."
     return Problem(sentence, advice, line, _with_locals(raw, error))
+
+
+def _is_word(name: str, source: Source) -> bool:
+    return name in source.names or name in source.functions or name in allowed.BUILT_INS
 
 
 def _with_locals(raw: str, error: Exception) -> str:

@@ -155,7 +155,9 @@ def _take_import(source: Source, node: ast.Import | ast.ImportFrom) -> None:
 
 
 def _take_all(source: Source, node: ast.ImportFrom) -> None:
-    module = allowed.whole_module(node.module or "")
+    name = node.module or ""
+    of_raylab = name.startswith("raylab.") and name.removeprefix("raylab.") not in allowed.OWN_SOLUTIONS
+    module = lecture if of_raylab else allowed.whole_module(name)
     if isinstance(module, Unavailable):
         source.remarks.append((node.lineno, module.sentence))
         return

@@ -46,16 +46,20 @@ _REFUSED: dict[type, tuple[str, str]] = {
 }  # fmt: skip
 
 
-def reachable(source: Source, name: str) -> list[str]:
-    """The function `name` and all functions of the file that it calls, at any depth."""
-    found, waiting = [], [name]
+def called(source: Source, name: str) -> set[str]:
+    """The functions of the file that one of them names."""
+    return {n.id for n in ast.walk(source.functions[name]) if isinstance(n, ast.Name)} & source.functions.keys()
+
+
+def reachable(source: Source, *names: str) -> list[str]:
+    """These functions, and all functions of the file that they call, at any depth."""
+    found: list[str] = []
+    waiting = list(names)
     while waiting:
         current = waiting.pop()
-        if current in found:
-            continue
-        found.append(current)
-        named = {n.id for n in ast.walk(source.functions[current]) if isinstance(n, ast.Name)}
-        waiting += sorted(named & source.functions.keys())
+        if current not in found:
+            found.append(current)
+            waiting += sorted(called(source, current))
     return found
 
 
@@ -74,11 +78,13 @@ class _Vet:
         self.local = set(_bound(self.function))
 
     def problems(self) -> Iterator[Problem]:
-        calls = [n for n in ast.walk(self.function) if isinstance(n, ast.Name) and n.id == self.function.name]
-        if calls:
+        own = called(self.source, self.function.name)
+        if self.function.name in reachable(self.source, *own):
+            around = "" if self.function.name in own else f", by way of `{sorted(own)[0]}`"
+            line = next(n.lineno for n in ast.walk(self.function) if isinstance(n, ast.Name) and n.id in own)
             yield Problem(
-                f"`{self.function.name}` calls itself.", "Write a loop: no box of the lecture needs recursion.",
-                calls[0].lineno,
+                f"`{self.function.name}` calls itself{around}.", "Write a loop: no box of the lecture needs recursion.",
+                line,
             )  # fmt: skip
         owned = {id(n.value) for n in ast.walk(self.function) if isinstance(n, ast.Attribute)}
         for node in ast.walk(self.function):

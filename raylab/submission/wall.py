@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import types
+import warnings
 from collections.abc import Callable
 from typing import Any
 
-from numba.core import ir
+from numba.core import config, ir
 from numba.core.compiler import run_frontend
+from numba.core.errors import NumbaWarning
+from numba.core.ssa import reconstruct_ssa
 
 from raylab.submission import allowed
 from raylab.submission.allowed import Unavailable
@@ -42,3 +46,16 @@ def _refused(named: Any) -> Problem:
     if named.value is ir.UNDEFINED:
         return Problem(f"`{named.name}` is not defined.", "Check how it is written.", named.loc.line)
     return Problem(f"`{named.name}` cannot be used in graded functions.", "", named.loc.line)
+
+
+def may_be_unset(function: Callable[..., Any]) -> list[tuple[int, str]]:
+    """Lines and variables that have no value on some way through the function; compiled, they are 0 there."""
+    before, config.ALWAYS_WARN_UNINIT_VAR = config.ALWAYS_WARN_UNINIT_VAR, 1
+    try:
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always", NumbaWarning)
+            reconstruct_ssa(run_frontend(function))
+    finally:
+        config.ALWAYS_WARN_UNINIT_VAR = before
+    found = [re.search(r"uninitialized variable (\w+)(?s:.*), line (\d+)", str(one.message)) for one in heard]
+    return sorted({(int(one[2]), one[1]) for one in found if one})
