@@ -235,6 +235,10 @@ def seen_by(result: dict[str, Any] | None, rival: str) -> str:
     return ", ".join(kind for kind, seen in sorted(found.items()) if seen) or ("-" if found else "")
 
 
+def _what(mutant: Mutant) -> str:
+    return mutant.what.replace("|", "&#124;")
+
+
 def _matrix(results: dict[str, Any]) -> str:
     """All mutants under the tests of all projects; before it, how many each of them notices."""
     asked = [m for m in ALL if m.name in results and "error" not in results[m.name]]
@@ -265,7 +269,7 @@ def _matrix(results: dict[str, Any]) -> str:
         result = results[m.name]
         ours = "".join(dict.fromkeys(t["test"] for t in killers(result))) or "-"
         name = f"{m.name}{' =' if m.test == '=' else ''}"
-        lines.append(f"| {name} | {m.what} | {ours} | {' | '.join(seen_by(result, r) for r in RIVALS)} |")
+        lines.append(f"| {name} | {_what(m)} | {ours} | {' | '.join(seen_by(result, r) for r in RIVALS)} |")
     return "\n".join(lines)
 
 
@@ -297,15 +301,17 @@ def _table(results: dict[str, Any]) -> str:
         found = killers(result) if result and "error" not in result else []
         if mutant.test == "=":
             verdict = "equivalent: " + ("FAIL" if found else "no complaint" if result else "not run")
-            lines.append(f"| {mutant.name} | {mutant.what} | 0 | {verdict} | | | |")
+            lines.append(f"| {mutant.name} | {_what(mutant)} | 0 | {verdict} | | | |")
         elif found:
             t = found[0]
             theory = f"{max(t['theory'], BLOCK):.0f}" if "theory" in t else ""
             bias = f"{t['bias']:.1f}" if "bias" in t and abs(t["bias"]) < 1e4 else ""
             kinds, s = "".join(dict.fromkeys(k["test"] for k in found)), seconds_to_kill(result)
-            lines.append(f"| {mutant.name} | {mutant.what} | {bias} | {kinds} | {t['samples']} | {theory} | {s:.2f} |")
+            lines.append(
+                f"| {mutant.name} | {_what(mutant)} | {bias} | {kinds} | {t['samples']} | {theory} | {s:.2f} |"
+            )
         else:
-            lines.append(f"| {mutant.name} | {mutant.what} | | {state(mutant, result)} | | | |")
+            lines.append(f"| {mutant.name} | {_what(mutant)} | | {state(mutant, result)} | | | |")
     return "\n".join(lines)
 
 

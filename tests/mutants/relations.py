@@ -43,8 +43,9 @@ def _means(name: str, technique: str, trial: str) -> Iterator[dict[str, Any]]:
     def relative(n: int) -> Any:
         return (drawn(n) / truth).mean(axis=1)
 
-    found = judge(relative, VARIANCES.get(name), float(truth.mean()))
-    yield _rivals(name) | {"variance": float(np.var(relative(200_000)))} | found
+    found, values = judge(relative, VARIANCES.get(name), float(truth.mean())), relative(200_000)
+    bias = 100.0 * float(np.nan_to_num(values).mean() - 1.0)
+    yield _rivals(name) | {"variance": float(np.var(values)), "bias": bias} | found
 
 
 def relation(name: str, words: list[str]) -> Iterator[dict[str, Any]]:
