@@ -8,7 +8,7 @@ from mutants.patch import Edit
 HIDDEN = [
     one("a49", "sphere: sampled all over, |cosine|: its back shines through", "ball", "MR", AREA,
         "max(0.0, dot(-L, y.n))", "abs(dot(-L, y.n))", 99.7, Edit(AREA, "if not shadow(scene, x, y):", "if True:"),
-        Edit("lights:SphereShape.sample", "if d2 <= radius * radius * (1.0 + 2.0**-40):", "if d2 > 0.0:")),
+        Edit("light_shapes:SphereShape.sample", "if d2 <= radius * radius * (1.0 + 2.0**-40):", "if d2 > 0.0:")),
     one("a103", "in focus at a distance along the ray, not on a plane", "lens aslant", "M", "camera:ThinLens.ray",
         "a * self.power", "a * (self.power * length(toward))", -51.5),
     one("C3", "one time for all samples of a pixel", "shrinks direct crossing_edge", "C", "pixels:send",
@@ -40,7 +40,7 @@ HIDDEN = [
     one("c34", "point light weighed against the BRDF's samples", "point, directly", "MR", "direct:direct",
         "result = point_light(x, V, brdf, N, scene, rng)",
         "result = point_light(x, V, brdf, N, scene, rng) * balance(1.0, brdf.pdf(V, N, N))"),
-    one("c35", "the light's normal is another in its pdf than in its sample", "two methods", "MR", "lights:to_area",
+    one("c35", "the light's normal is another in its pdf than in its sample", "two methods", "MR", "light_shapes:to_area",
         "-dot(d, y.n)", "dot(d, y.n)"),
     one("c36", "values rounded to 8 bits on their way into the mean", "running mean", "T", "pixels:receive",
         "step = value - mean", "value = Vec3(round(value.x * 255.0) / 255.0, value.y, value.z)\n"
