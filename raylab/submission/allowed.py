@@ -99,6 +99,8 @@ def member(owner: Any, name: str) -> Any:
     public = listed.get(owner) or frozenset(n for n in vars(math) if not n.startswith("_"))
     if name not in public:
         advice = "Write min(max(a, 0.0), 1.0)." if name == "clip" else nearest(name, public)
+        if name in lecture.__all__:
+            advice = f"raylab.lecture has it: write {name}."
         return Unavailable(f"`{owner.__name__}.{name}` cannot be used in graded functions.", advice)
     return getattr(owner, name)
 
@@ -108,7 +110,9 @@ def nearest(name: str, known: Any) -> str:
     import difflib
 
     folded = {str(k).lower().replace("_", ""): str(k) for k in sorted(known)}
-    found = difflib.get_close_matches(name.lower().replace("_", ""), folded, 1, 0.6)
+    plain = name.lower().replace("_", "")
+    begins = [f for f in folded if len(f) > 2 and (plain.startswith(f) or (len(plain) > 2 and f.startswith(plain)))]
+    found = sorted(begins, key=len) or difflib.get_close_matches(plain, folded, 1, 0.6)
     return f"Did you mean `{folded[found[0]]}`?" if found else ""
 
 

@@ -136,7 +136,7 @@ def colour(function: str, value: Any, line: int) -> list[float]:
 
 
 def _what(value: Any) -> str:
-    if isinstance(value, bool | int | float):
+    if isinstance(value, int | float) and not isinstance(value, bool):
         return f"the number {value:g}"
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape}"

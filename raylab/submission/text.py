@@ -19,7 +19,7 @@ _LOOKALIKES = {"\u2212": "-", "\u2013": "-", "\u2014": "-", "\u00d7": "*", "\u00
 _TURNING = set("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200e\u200f\u061c")  # bidirectional controls
 _SYNTAX_ADVICE = (
     (r"expected ':'", "A line that begins with def, if, else, for or while ends with a colon."),
-    (r"was never closed|unmatched|does not match", "Count the brackets: each one that opens must close."),
+    (r"was never closed|unmatched '|closing parenthesis", "Count the brackets: each one that opens must close."),
     (r"unterminated .*string", "A quotation mark is missing at the end of the text."),
     (r"unexpected indent", "This line begins further right than the one above it; align them."),
     (r"unindent does not match", "No line above begins at this column; align it with one of them."),

@@ -138,7 +138,25 @@ class _Vet:
             yield Problem(f"`.{node.attr}` is not known here.", _instead(node.attr), node.lineno)
 
 
+_HANDED = "It must be an argument of this function"
+_MEANT = {
+    "light": "The lights are in the scene: for light in scene.lights:", "lights": "Write scene.lights.",
+    "y": "A point on a light: y, p_y = light.sample(x, rng.square())", "L": "The direction: L = normalize(y - x)",
+    "p_y": "The density: y, p_y = light.sample(x, rng.square())",
+    "w": "A direction: w = sample_hemisphere(N, rng.square())",
+    "u": "A pair of random numbers: u = rng.square()", "u1": "Two random numbers: u1, u2 = rng.square()",
+    "u2": "Two random numbers: u1, u2 = rng.square()", "V": f"{_HANDED}, as on the slides for any BRDF.",
+    "brdf": f"{_HANDED}; a diffuse surface has k_d instead.", "k_d": f"{_HANDED}; any other BRDF is brdf.eval(V, L).",
+    "x": f"{_HANDED}.", "N": f"{_HANDED}.", "scene": f"{_HANDED}.", "rng": f"{_HANDED}.",
+    "np": "Write at the top: import numpy as np", "math": "Write at the top: import math",
+    "pi": "Import it: from raylab.lecture import PI",
+}  # fmt: skip
+_RNG = ("uniform", "random", "rand", "next", "random_sample", "randint")
+
+
 def _instead(attribute: str) -> str:
+    if attribute in _RNG:
+        return "rng has number() and square()."
     words = {"norm": "length", "mag": "length", "magnitude": "length", "normalized": "normalize", "unit": "normalize"}
     word = words.get(attribute, attribute)
     if callable(getattr(allowed.lecture, word, None)):
@@ -158,12 +176,8 @@ def _unknown(name: str, known: Any) -> Unavailable:
         )
     if name in allowed.lecture.__all__:
         return Unavailable(f"`{name}` is not defined.", f"Import it: from raylab.lecture import {name}")
-    if name in ("np", "math"):
-        return Unavailable(
-            f"`{name}` is not defined.", "Write at the top: import " + {"np": "numpy as np"}.get(name, name)
-        )
-    if name == "pi":
-        return Unavailable("`pi` is not defined.", "Import it: from raylab.lecture import PI")
+    if name in _MEANT:
+        return Unavailable(f"`{name}` is not defined.", _MEANT[name])
     every = [*known, *allowed.BUILT_INS, *allowed.lecture.__all__]
     return Unavailable(f"`{name}` is not defined.", allowed.nearest(name, every) or "Check how it is written.")
 

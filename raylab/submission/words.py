@@ -18,7 +18,7 @@ _TYPES = (
     (r"Point.*", "a Point"),
     (r"AreaLight.*|PointLight.*|DirectionalLight.*", "a light"),
     (r"SceneData.*", "the scene"),
-    (r"\w*Stream.*", "rng"),
+    (r"\w*Stream.*", "`rng`"),
     (r"Lambertian.*|Phong.*|RoughConductor.*|RoughPlastic.*", "a BRDF"),
     (r"Table.*", "a list of lights"),
     (r"(Uni)?Tuple\(.*|tuple", "a tuple"),
@@ -29,7 +29,8 @@ _TYPES = (
     (r"Function.*|type\(.*|Dispatcher.*|builtin_function_or_method|function|method|Bound.*|Compiled", "a function"),
 )  # fmt: skip
 PARTS = {
-    "Vec3": "x, y, z", "Point": "p (its place) and n (the normal)", "rng": "number() and square()",
+    "Vec3": "x, y, z", "Point": "p (its place) and n (the normal)", "`rng`": "number() and square()",
+    "a list of lights": "elements: for light in scene.lights:",
     "a light": "radiance, sample(x, u), pdf(x, y)", "the scene": "lights, points, suns and environment",
     "a BRDF": "k_d, eval(V, L), sample(V, N, u), pdf(V, w, N)",
 }  # fmt: skip
@@ -95,6 +96,11 @@ PYTHON: tuple[Row, ...] = (
         "This is a function; it must be called first.",
         "Write rng.square() with brackets.",
     ),
+    (
+        r"'(float|int)' object is not subscriptable",
+        "A number has no index.",
+        "Where u is asked for, a pair is due: rng.square(), not rng.number().",
+    ),
     (r"'(?P<a>[^']+)' object is not subscriptable", "{a} has no index.", ""),
     (
         r"'(?P<a>[^']+)' object is not callable",
@@ -117,8 +123,13 @@ PYTHON: tuple[Row, ...] = (
         "Compare a number: a component (c.x), dot(a, b), length(a) or luminance(c). max(0.0, ...) is for numbers.",
     ),
     (
-        r"must be real number, not (?P<a>\w+)|operand '(?P<b>\w+)' does not support ufuncs",
-        "This function is for numbers, and is given {a}{b}.",
+        r"operand 'Vec3' does not support ufuncs",
+        "`numpy` cannot calculate with a Vec3.",
+        "Begin a sum with black instead of an array; for functions take the components: Vec3(f(v.x), f(v.y), f(v.z)).",
+    ),
+    (
+        r"must be real number, not (?P<a>\w+)",
+        "This function is for numbers, and is given {a}.",
         "Take the components one by one: Vec3(f(v.x), f(v.y), f(v.z)).",
     ),
     (r"bad operand type for abs\(\): 'Vec3'", "`abs` is for numbers.", "For a vector write absolute(v), or length(v)."),
@@ -143,6 +154,11 @@ PYTHON: tuple[Row, ...] = (
         r"too many values to unpack \(expected (?P<n>\d+)",
         "On the left of = stand {n} names, on the right more values.",
         "rng.square() gives two numbers; light.sample(x, u) gives y and p_y.",
+    ),
+    (
+        r"cannot unpack non-iterable (method|function)",
+        "This is a function; it must be called first.",
+        "Write rng.square() with brackets.",
     ),
     (r"cannot unpack non-iterable (?P<a>\w+)", "{a} cannot be taken apart into several names.", ""),
     (r"'(?P<a>[^']+)' object is not iterable", "A for loop cannot run over {a}.", "Write for i in range(n):"),
@@ -172,6 +188,16 @@ PYTHON: tuple[Row, ...] = (
         r"'tuple' object has no attribute '(p|n|radiance)'",
         "A point is expected here, and a tuple is given.",
         "light.sample gives two things: y, p_y = light.sample(x, rng.square()).",
+    ),
+    (
+        r"'Vec3' object has no attribute '(p|n|slack|tilt)'",
+        "A point is expected here, and a Vec3 is given.",
+        "Where surfaces meet, write the points themselves: shadow(scene, x, y), dist_sqr(x, y).",
+    ),
+    (
+        r"'Point' object has no attribute '[xyz]'",
+        "A Vec3 is expected here, and a point is given.",
+        "y - x is the vector from x to y; x.p is the place of x, x.n the normal there.",
     ),
     (r"'(?P<a>[^']+)' object has no attribute '(?P<name>\w+)'", "There is no `.{name}` in {a}.", "{parts}"),
     (r"AssertionError", "The assertion on this line does not hold.", ""),
