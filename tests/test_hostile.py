@@ -8,6 +8,10 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
+import subprocess
+import sys
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -19,6 +23,7 @@ from hostile.toy import ASSIGNMENT, FULL, HONEST, WRONG, Judge
 
 from raylab.grading import process, session
 from raylab.grading.grading import grade
+from raylab.grading.jail import readable
 from raylab.grading.process import relatives
 from raylab.grading.results import points, problems
 from raylab.grading.session import Limits
@@ -114,10 +119,10 @@ def test_hostile(case, wall, place, monkeypatch):
     assert problems(words) == []
     assert words["extra_data"]["status"] == "graded", grading.staff
     assert not [secret for secret in secrets(grading) if secret in text]
-    assert not any(MARKER in said for said in grading.staff)
+    assert not any(MARKER in said for said in (*grading.staff, *grading.printed))
     assert [path.name for path in (place / "results").iterdir()] == ["results.json"]
     if wall == "naked":
-        assert points(words) == case.score, grading.staff
+        assert points(words) == case.score or (case.racing and points(words) < case.score), grading.staff
         assert case.says in text
     else:
         assert points(words) <= case.behind_the_ladder, text
@@ -213,3 +218,39 @@ def test_64_a_machine_that_pauses_costs_no_points(place, workers):
         stop.set()
         holder.join()
     assert points(words) == FULL
+
+
+# --- as an ordinary user ---
+
+BY_MACHINE = "20 or 23 or 27 or 31 or 33 or 34 or 35 or 36"  # the attacks that the system must ward off
+ORDINARY = 54321
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="all tests of this file were run by an ordinary user")
+@pytest.mark.parametrize(
+    "which", [BY_MACHINE, pytest.param("naked or measured or session", marks=pytest.mark.certify)], ids=["some", "all"]
+)
+def test_as_an_ordinary_user(which):
+    """The grader itself has no rights here; where Python is in a folder of root's alone, it may read that."""
+    setpriv, here = shutil.which("setpriv"), Path(__file__).parent
+    if not setpriv:
+        pytest.skip("no setpriv, by which root becomes an ordinary user")
+    command = [setpriv, f"--reuid={ORDINARY}", f"--regid={ORDINARY}", "--clear-groups"]
+    if not all(map(readable, (sys.executable, sys.base_prefix, str(here)))):
+        command += ["--inh-caps=+dac_read_search", "--ambient-caps=+dac_read_search"]
+    folder = Path(tempfile.mkdtemp(prefix="ordinary-"))
+    os.chown(folder, ORDINARY, ORDINARY)
+    files = ["test_hostile.py", "test_session.py"]
+    command += [
+        sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--basetemp", f"{folder}/t",
+        "-k", f"({which}) and not ladder and not ordinary", *(str(here / name) for name in files),
+    ]  # fmt: skip
+    environment = {"PATH": os.environ["PATH"], "HOME": str(folder), "TMPDIR": str(folder)}
+    environment |= {"PYTHONPATH": str(here.parent), "PYTHONDONTWRITEBYTECODE": "1"}
+    ran = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True)
+    shutil.rmtree(folder)
+    if "Operation not permitted" in ran.stderr and not ran.stdout:
+        pytest.skip(f"this machine does not let root become an ordinary user: {ran.stderr.strip()}")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert " passed" in ran.stdout
+    assert relatives(-1, ORDINARY) == []

@@ -9,7 +9,7 @@ import pytest
 
 from raylab.grading.faults import Fault
 from raylab.grading.process import relatives
-from raylab.grading.session import Limits, Session
+from raylab.grading.session import Limits, Session, probe
 
 NAKED = Path(__file__).parent / "hostile" / "naked.py"
 SUM = {"id": "sum", "function": "f", "kind": "map", "gives": ["vector"]}
@@ -66,6 +66,12 @@ def test_one_task_that_kills_leaves_the_others():
         findings = session.load(GOOD, [SUM, hang])
         assert [(finding["stage"], finding["task"]) for finding in findings] == [("run", "hang")]
         np.testing.assert_array_equal(session.map("sum", [[2.0, 1.0]]), [[3.0, 1.0, 2.0]])
+
+
+def test_what_the_machine_allows_can_be_asked():
+    found = probe()
+    assert found["limits"]
+    assert found["shut"] == (found["seccomp"] and bool(found["landlock"] or found["user"] == "own"))
 
 
 def test_nothing_is_left_of_a_session():

@@ -45,7 +45,8 @@ class Grading:
     judged: list[Any] = field(default_factory=list)
     isolation: dict[str, Any] = field(default_factory=dict)
     entropy: int = 0
-    staff: list[str] = field(default_factory=list)  # for the staff's eyes only: output, tracebacks
+    staff: list[str] = field(default_factory=list)  # for the staff: the report of pytest, tracebacks
+    printed: list[str] = field(default_factory=list)  # by the submission, which may have printed what is hidden
 
 
 def grade(
@@ -119,7 +120,7 @@ def _grade(
         grading.staff.append(hidden.run({own.id: partial(judged, test, own) for test, own in pairs}))
         grading.results.extra_data["token"] = getattr(judge, "token", "")
         _name_causes(grading, assignment, session)
-        grading.staff.append(session.output)
+        grading.printed.append(session.output)
 
 
 def _judge_one(grading: Grading, test: Test, own: Any, judge: Any, without: bool) -> str:
@@ -134,7 +135,7 @@ def _judge_one(grading: Grading, test: Test, own: Any, judge: Any, without: bool
     except Fault as fault:
         test.score, test.output = 0.0, f"{own.says}\nWhen it was called, {fault.sentence}."
         test.extra_data = {"outcome": "FAIL", "cause": fault.cause}
-        grading.staff.append(f"{own.id}: {fault.cause}: {fault.detail}")
+        grading.printed.append(f"{own.id}: {fault.cause}: {fault.detail}")
         return test.output
     grading.judged.append(judged)
     test.score = judged.score

@@ -22,6 +22,7 @@ class Case:
     says: str = ""  # in the results
     walls: tuple[str, ...] = ("naked", "ladder")
     slow: bool = False  # runs into a deadline
+    racing: bool = False  # how many replies are there when the grader looks depends on the moment: at most `score`
 
     @property
     def behind_the_ladder(self) -> float:
