@@ -2,6 +2,9 @@
 
 A sample of a pixel is drawn from the pixel filter itself (importance sampling), so it counts fully and for this
 pixel alone: pixels stay independent, and the standard error of each is its own.
+
+A ray is made in two steps: `camera.draw(rng)` draws the random points, `camera.ray(...)` is plain arithmetic with
+them, which the compiler does for several rays at a time.
 """
 
 from __future__ import annotations
@@ -16,10 +19,12 @@ from raylab.embree import TNEAR
 from raylab.jit import njit
 from raylab.pose import pose_at
 from raylab.record import record
-from raylab.sampling import sample_concentric_disk, sample_triangle
+from raylab.sampling import sample_concentric_disk, sample_triangle, sin_cos_turns
 from raylab.surface import round32
-from raylab.vec3 import Vec3, dot, length
+from raylab.vec3 import Vec3, length
 from raylab.view import View
+
+CENTRE = (0.5, 0.5)
 
 
 @record
@@ -98,8 +103,13 @@ class Pinhole(NamedTuple):
     skip: float  # how far a distant camera may advance before anything can be hit
     filter: Any
 
-    def ray(self, column, row, rng):
-        dx, dy = self.filter.sample(rng.square())
+    def draw(self, rng):
+        """A point for the pixel filter, and none for the aperture."""
+        return rng.square(), CENTRE
+
+    def ray(self, column, row, film, lens, time):
+        """Origin, direction and length of the eye ray through the random points `film` and `lens`."""
+        dx, dy = self.filter.sample(film)
         d = self.corner + self.across * (column + 0.5 + dx) + self.down * (row + 0.5 + dy)
         start = self.near
         if self.skip > 0.0:
@@ -129,6 +139,10 @@ class DiskAperture(NamedTuple):
 
     radius: float
 
+    def reach(self):
+        """The distance from the centre to the furthest point."""
+        return self.radius
+
     def sample(self, u):
         x, y = sample_concentric_disk(u)
         return self.radius * x, self.radius * y
@@ -136,25 +150,33 @@ class DiskAperture(NamedTuple):
 
 @record
 class PolygonAperture(NamedTuple):
-    """A convex opening: triangles of equal area from the centre to `corners` (n + 1, 2), the last as the first."""
+    """A regular opening: triangles from its centre, with corners at `radius`, the first one `first` turns from x."""
 
-    corners: View
+    radius: float
+    sectors: float
+    first: float
+    cosine: float  # of the angle of a sector
+    sine: float
+
+    def reach(self):
+        return self.radius
 
     def sample(self, u):
-        sectors = len(self.corners) - 1
-        k = min(int(u[0] * sectors), sectors - 1)
-        b1, b2 = sample_triangle((u[0] * sectors - k, u[1]))
-        x = b1 * self.corners[k, 0] + b2 * self.corners[k + 1, 0]
-        return x, b1 * self.corners[k, 1] + b2 * self.corners[k + 1, 1]
+        wide = u[0] * self.sectors
+        sector = np.floor(wide)
+        b1, b2 = sample_triangle((wide - sector, u[1]))
+        x, y = self.radius * (b1 + b2 * self.cosine), self.radius * b2 * self.sine
+        sine, cosine = sin_cos_turns(self.first + sector / self.sectors)
+        return cosine * x - sine * y, sine * x + cosine * y
 
 
 def make_aperture(radius: float, blades: int, rotation: float) -> Any:
     """A disk, or the regular polygon of the same area, which keeps the amount of blur; `rotation` in degrees."""
     if blades == 0:
         return DiskAperture(radius)
-    to_corner = radius * math.sqrt(2.0 * math.pi / (blades * math.sin(2.0 * math.pi / blades)))
-    turn = math.radians(rotation) + 2.0 * math.pi / blades * np.arange(blades + 1)
-    return PolygonAperture(View(to_corner * np.column_stack([np.cos(turn), np.sin(turn)])))
+    angle = 2.0 * math.pi / blades
+    to_corner = radius * math.sqrt(angle / math.sin(angle))
+    return PolygonAperture(to_corner, float(blades), rotation / 360.0, math.cos(angle), math.sin(angle))
 
 
 @record
@@ -171,29 +193,35 @@ class ThinLens(NamedTuple):
     down: Vec3
     near: float
     far: float
+    skip: float  # as in Pinhole, from the nearest point of the aperture
     left: Vec3
     up: Vec3
     aperture: Any
     power: float
     filter: Any
 
-    def ray(self, column, row, rng):
-        dx, dy = self.filter.sample(rng.square())
+    def draw(self, rng):
+        """A point for the pixel filter and one for the aperture."""
+        return rng.square(), rng.square()
+
+    def ray(self, column, row, film, lens, time):
+        dx, dy = self.filter.sample(film)
         toward = self.corner + self.across * (column + 0.5 + dx) + self.down * (row + 0.5 + dy)
-        x, y = self.aperture.sample(rng.square())
+        x, y = self.aperture.sample(lens)
         a = self.left * x + self.up * y
         d = toward - a * self.power
         o = self.origin + a
         start = self.near
-        if dot(o, o) > 4.0:  # nothing can be hit before, see Pinhole.skip
-            start = max(start, (length(o) - 2.0) / length(d))
+        if self.skip > 0.0:
+            start = max(start, self.skip / length(d))
         return round32(o + d * start), round32(d), max(TNEAR, self.far - start)
 
     def at(self, pose):
         """The camera at the local origin, moved to a pose."""
         return ThinLens(
             pose.p, turned(pose, self.corner), turned(pose, self.across), turned(pose, self.down), self.near, self.far,
-            turned(pose, self.left), turned(pose, self.up), self.aperture, self.power, self.filter,
+            max(0.0, length(pose.p) - self.aperture.reach() - 2.0), turned(pose, self.left), turned(pose, self.up),
+            self.aperture, self.power, self.filter,
         )  # fmt: skip
 
 
@@ -203,8 +231,17 @@ class MovingCamera(NamedTuple):
 
     still: Any  # Pinhole or ThinLens at the origin, looking along +z
     pieces: View  # rows of `raylab.pose`
-    clock: View
 
-    def ray(self, column, row, rng):
-        pose = pose_at(self.pieces, 0, len(self.pieces), self.clock[0])
-        return self.still.at(pose).ray(column, row, rng)
+    def draw(self, rng):
+        return self.still.draw(rng)
+
+    def ray(self, column, row, film, lens, time):
+        pose = pose_at(self.pieces, 0, len(self.pieces), time)
+        return self.still.at(pose).ray(column, row, film, lens, time)
+
+
+@njit
+def eye_ray(camera, column, row, rng, time):
+    """A random eye ray of a pixel at a time in [0, 1]."""
+    film, lens = camera.draw(rng)
+    return camera.ray(column, row, film, lens, time)

@@ -202,10 +202,10 @@ def place_mesh(lights, k, motion):
 # --- each thread has its own clock ---
 
 
-def own_copy(data: Any, camera: Any) -> tuple[Any, Any]:
-    """The scene and its camera with a clock, and lights that move, of their own; what is static is shared."""
+def own_copy(data: Any) -> Any:
+    """The scene with a clock, and lights that move, of its own; what is static is shared."""
     if isinstance(data.motion, Static):
-        return data, camera
+        return data
     motion = data.motion._replace(clock=View(np.zeros(1)))
     if isinstance(motion.lights, MovingLights):
         lights, store = data.lights, data.lights.store
@@ -221,6 +221,4 @@ def own_copy(data: Any, camera: Any) -> tuple[Any, Any]:
         quadrics = data.quadrics
         table = Table(quadrics.table.cls, quadrics.table.rows.array, motion.clock)
         data = data._replace(quadrics=quadrics._replace(table=table))
-    if hasattr(camera, "clock"):
-        camera = camera._replace(clock=motion.clock)
-    return data._replace(motion=motion), camera
+    return data._replace(motion=motion)

@@ -68,14 +68,16 @@ def send(scene, camera, sampler, packet, column, row, pixel, streams, first, las
         for sample in range(first, last):
             rng = sampler.stream(pixel, stream, sample)
             time = scene.motion.draw(rng)
-            o, d, tfar = camera.ray(column, row, rng)
-            packet.put(lane, o, d, tfar, time)
-            if not is_valid_ray(o, d):
-                packet.switch_off(lane)
-                scene.tally[INVALID_RAYS] += 1
+            film, lens = camera.draw(rng)
+            packet.draw(lane, film, lens, time)
             lane += 1
-    for free in range(lane, LANES):
-        packet.switch_off(free)
+    for i in range(LANES):  # one after the other or side by side, as the compiler likes
+        film, lens, time = packet.drawn(i)
+        o, d, tfar = camera.ray(column, row, film, lens, time)
+        packet.put(i, o, d, tfar, is_valid_ray(o, d))
+    for i in range(lane):
+        scene.tally[INVALID_RAYS] += 1 + packet.valid[i]
+    packet.clear(lane)
     trace_packet(scene.embree, packet)
     return sampler.counter.next[0]
 

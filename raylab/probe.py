@@ -180,7 +180,7 @@ class Probe:
 
         def own() -> tuple[Any, Any, Any]:
             data = self.scene.data._replace(tally=View(np.zeros(TALLIES, np.int64)))
-            return *own_copy(data, self.scene.camera), samplers.make("independent", seed & ((1 << 63) - 1), 1)
+            return own_copy(data), self.scene.camera, samplers.make("independent", seed & ((1 << 63) - 1), 1)
 
         return chosen, own
 

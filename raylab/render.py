@@ -176,20 +176,11 @@ def _arguments(run: _Run, tally: Any, rows: tuple[int, int], samples: tuple[int,
     camera = run.scene.description.camera
     cells = run.plan.samples if run.plan.samples < MAX_SAMPLES else 16
     sampler = samplers.make(run.sampler, run.seed, cells)
-    data, eye = own_copy(run.scene.data._replace(tally=View(tally)), run.scene.camera)
+    data = own_copy(run.scene.data._replace(tally=View(tally)))
     pixels = view(run.accumulator)
     return (
-        data,
-        eye,
-        run.strategy,
-        sampler,
-        new_packet(),
-        pixels,
-        camera.width,
-        camera.height,
-        rows,
-        samples,
-    )
+        data, run.scene.camera, run.strategy, sampler, new_packet(), pixels, camera.width, camera.height, rows, samples
+    )  # fmt: skip
 
 
 def _compile(run: _Run) -> None:

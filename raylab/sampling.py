@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from raylab.jit import njit
 from raylab.vec3 import Vec3, cross, dot, length
 
@@ -149,37 +151,41 @@ def sample_concentric_disk(u):
     Source: Shirley and Chiu 1997, "A low distortion map between disk and square".
     """
     a, b = 2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0
-    if abs(a) > abs(b):
-        sine, cosine = sin_cos_eighth(PI / 4.0 * (b / a))
-        return a * cosine, a * sine
-    if b == 0.0:
-        return 0.0, 0.0
-    sine, cosine = sin_cos_eighth(PI / 4.0 * (a / b))
-    return b * sine, b * cosine
+    flat = abs(a) > abs(b)  # nobody can foretell which, so a choice of values is quicker than a jump
+    radius, other = (a, b) if flat else (b, a)
+    sine, cosine = sin_cos_eighth(PI / 4.0 * (other / (radius if radius != 0.0 else 1.0)))
+    along, across = radius * cosine, radius * sine
+    return (along, across) if flat else (across, along)
+
+
+_SIN = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(6))
+_COS = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(7))
 
 
 @njit
 def sin_cos_eighth(x):
     """sin and cos for |x| <= pi / 4 by their series, which costs a fraction of a library call.
 
-    The first terms left out, x^17 / 17! and x^18 / 18!, are below 2^-54.
+    The first terms left out, x^13 / 13! and x^14 / 14!, are below 2^-37: a thousandth of what is lost when an eye ray
+    is rounded to float32. Terms are taken in pairs, since what costs is the chain of operations that wait for one
+    another.
     """
-    y = x * x
-    s = 1.0 - y * (1.0 / 210.0)  # x^15 / 15! over x^13 / 13!
-    s = 1.0 - y * (1.0 / 156.0) * s
-    s = 1.0 - y * (1.0 / 110.0) * s
-    s = 1.0 - y * (1.0 / 72.0) * s
-    s = 1.0 - y * (1.0 / 42.0) * s
-    s = 1.0 - y * (1.0 / 20.0) * s
-    s = 1.0 - y * (1.0 / 6.0) * s
-    c = 1.0 - y * (1.0 / 240.0)  # x^16 / 16! over x^14 / 14!
-    c = 1.0 - y * (1.0 / 182.0) * c
-    c = 1.0 - y * (1.0 / 132.0) * c
-    c = 1.0 - y * (1.0 / 90.0) * c
-    c = 1.0 - y * (1.0 / 56.0) * c
-    c = 1.0 - y * (1.0 / 30.0) * c
-    c = 1.0 - y * (1.0 / 12.0) * c
-    return x * s, 1.0 - y * (1.0 / 2.0) * c
+    y, s, c = x * x, _SIN, _COS
+    z = y * y
+    sine = (s[0] + y * s[1]) + z * ((s[2] + y * s[3]) + z * (s[4] + y * s[5]))
+    cosine = (c[0] + y * c[1]) + z * ((c[2] + y * c[3]) + z * ((c[4] + y * c[5]) + z * c[6]))
+    return x * sine, cosine
+
+
+@njit
+def sin_cos_turns(t):
+    """sin and cos of t turns, without a jump: those of the nearest quarter, exchanged and with its signs."""
+    t = 4.0 * (t - np.floor(t))
+    quarter = np.floor(t + 0.5)  # 0 to 4
+    s, c = sin_cos_eighth(PI / 2.0 * (t - quarter))
+    odd = quarter == 1.0 or quarter == 3.0
+    sine, cosine = (c, s) if odd else (s, c)
+    return -sine if 1.5 < quarter < 3.5 else sine, -cosine if 0.5 < quarter < 2.5 else cosine
 
 
 @njit

@@ -16,7 +16,7 @@ from raylab.errors import SceneError
 from raylab.geometry import Placement
 from raylab.motion import Moving
 from raylab.pose import LINEAR
-from raylab.vec3 import Vec3
+from raylab.vec3 import Vec3, length
 from raylab.view import View
 
 Array = npt.NDArray[np.float64]
@@ -31,29 +31,23 @@ def make_camera(camera: d.Camera, placement: Placement, motion: Any = None) -> P
     """The camera record in normalised coordinates; SceneError for a camera that sees nothing."""
     check_camera(camera)
     if camera.motion is not None and isinstance(motion, Moving):
-        return make_moving_camera(camera, placement, motion.clock)
+        return make_moving_camera(camera, placement)
     eye = pinhole(camera, placement)
     if not has_lens(camera):
         return eye
     left, up, _ = axes(camera)
+    radius = camera.aperture_radius * placement.scale
+    aperture = make_aperture(radius, camera.aperture_blades, camera.aperture_rotation)
     return ThinLens(
-        origin=eye.origin,
-        corner=eye.corner,
-        across=eye.across,
-        down=eye.down,
-        near=eye.near,
-        far=eye.far,
+        **(eye._asdict() | {"skip": max(0.0, length(eye.origin) - aperture.reach() - 2.0)}),
         left=Vec3(*left),
         up=Vec3(*up),
-        aperture=make_aperture(
-            camera.aperture_radius * placement.scale, camera.aperture_blades, camera.aperture_rotation
-        ),
+        aperture=aperture,
         power=1.0 / (camera.focus_distance * placement.scale),
-        filter=eye.filter,
     )
 
 
-def make_moving_camera(camera: d.Camera, placement: Placement, clock: View) -> MovingCamera:
+def make_moving_camera(camera: d.Camera, placement: Placement) -> MovingCamera:
     """The record of a camera that moves while the shutter is open."""
     assert camera.motion is not None
     matrices = np.array(camera.motion.matrices, np.float64)
@@ -62,7 +56,7 @@ def make_moving_camera(camera: d.Camera, placement: Placement, clock: View) -> M
     motion, shutter = replace(camera.motion, matrices=matrices), (camera.shutter_open, camera.shutter_close)
     rows = keyframes.table(motion, shutter, np.eye(4), placement.centre, placement.scale)
     rows[:, LINEAR] /= placement.scale  # directions keep their length
-    return MovingCamera(still, View(rows), clock)
+    return MovingCamera(still, View(rows))
 
 
 def axes(camera: d.Camera) -> Array:
