@@ -238,10 +238,3 @@ class MovingCamera(NamedTuple):
     def ray(self, column, row, film, lens, time):
         pose = pose_at(self.pieces, 0, len(self.pieces), time)
         return self.still.at(pose).ray(column, row, film, lens, time)
-
-
-@njit
-def eye_ray(camera, column, row, rng, time):
-    """A random eye ray of a pixel at a time in [0, 1]."""
-    film, lens = camera.draw(rng)
-    return camera.ray(column, row, film, lens, time)

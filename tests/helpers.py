@@ -87,3 +87,9 @@ def same_bits(a, b):
     """Are two lists of floats the same, bit for bit? A NaN equals any NaN."""
     a, b = np.asarray(a, np.float64), np.asarray(b, np.float64)
     return np.array_equal(np.where(np.isnan(a), 7.0, a).view(np.int64), np.where(np.isnan(b), 7.0, b).view(np.int64))
+
+
+def eye_ray(camera, column, row, rng, time=0.0):
+    """An eye ray of a pixel, made of what `rng` draws."""
+    film, lens = camera.draw(rng)
+    return camera.ray(column, row, film, lens, time)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from helpers import ALPHA, U53, array, chi_square_p, same_bits, size, squares
+from helpers import ALPHA, U53, array, chi_square_p, eye_ray, same_bits, size, squares
 from scipy.spatial.transform import Rotation
 from scipy.special import erf
 
@@ -164,7 +164,7 @@ def test_rays_are_those_of_a_plain_camera(name):
     eye = pinhole(c, HERE)
     for column, row in FILM:
         for u in ((0.5, 0.5), (0.0, 0.25)):  # box filter: the centre of the pixel, and a point on its left edge
-            o, ray, far = eye.ray(column, row, Fixed(u))
+            o, ray, far = eye_ray(eye, column, row, Fixed(u))
             start, want = numpy_ray(c, column + u[0], row + u[1])
             assert np.abs(array(ray) - want).max() <= 2 * U24 * np.abs(want).max()
             near = start + want * c.near_clip
@@ -173,7 +173,7 @@ def test_rays_are_those_of_a_plain_camera(name):
 
 
 def test_rays_hold_float32_numbers():
-    o, ray, _ = pinhole(CAMERAS["turned"], HERE).ray(3, 5, Fixed((0.3, 0.7)))
+    o, ray, _ = eye_ray(pinhole(CAMERAS["turned"], HERE), 3, 5, Fixed((0.3, 0.7)))
     for v in (o, ray):
         assert same_bits([*v], np.float32([*v]).astype(float))
 
@@ -181,8 +181,8 @@ def test_rays_hold_float32_numbers():
 def test_the_field_of_view_spans_the_film():
     c = d.Camera(fov=90.0, width=100, height=50)
     eye = pinhole(c, HERE)
-    _, left, _ = eye.ray(0, 0, Fixed((0.0, 0.0)))
-    _, right, _ = eye.ray(99, 49, Fixed((LAST, LAST)))
+    _, left, _ = eye_ray(eye, 0, 0, Fixed((0.0, 0.0)))
+    _, right, _ = eye_ray(eye, 99, 49, Fixed((LAST, LAST)))
     assert [*left] == pytest.approx([1.0, 0.5, 1.0], abs=U24)
     assert [*right] == pytest.approx([-1.0, -0.5, 1.0], abs=U24)
 
@@ -190,7 +190,7 @@ def test_the_field_of_view_spans_the_film():
 def test_rays_go_where_the_filter_says():
     c = d.Camera(filter=d.Filter("tent", 1.5), width=8, height=8)
     eye, (dx, dy) = pinhole(c, HERE), camera.make_filter(c.filter).sample((0.1, 0.8))
-    _, ray, _ = eye.ray(2, 5, Fixed((0.1, 0.8)))
+    _, ray, _ = eye_ray(eye, 2, 5, Fixed((0.1, 0.8)))
     assert np.abs(array(ray) - numpy_ray(c, 2.5 + dx, 5.5 + dy)[1]).max() <= 2 * U24
 
 
@@ -216,7 +216,7 @@ def test_a_far_camera_meets_the_same_points(distance):
     c = d.Camera(to_world=matrix, fov=math.degrees(2 * math.atan(1.5 / distance)), width=64, height=64, far_clip=1e9)
     eye = pinhole(c, HERE)
     for column, row in ((0, 0), (31, 31), (40, 13), (63, 20)):
-        o, ray, far = eye.ray(column, row, Fixed((0.5, 0.5)))
+        o, ray, far = eye_ray(eye, column, row, Fixed((0.5, 0.5)))
         start, want = numpy_ray(c, column + 0.5, row + 0.5)
         nearest = start + want * (-(start @ want) / (want @ want))  # of the true ray to the centre
         t = (nearest - array(o)) @ array(ray) / (array(ray) @ array(ray))
@@ -231,13 +231,14 @@ def test_a_far_camera_meets_the_same_points(distance):
 
 def test_a_far_plane_before_the_content_is_kept():
     c = d.Camera(to_world=placed((0.0, 0.0, 100.0), (0.0, math.pi, 0.0)), far_clip=50.0)
-    _, _, far = pinhole(c, HERE).ray(128, 128, Fixed((0.5, 0.5)))
+    _, _, far = eye_ray(pinhole(c, HERE), 128, 128, Fixed((0.5, 0.5)))
     assert 0.0 < far < 1e-20
 
 
 @njit
 def ray_of(eye, column, row, source):
-    return eye.ray(column, row, source)
+    film, lens = eye.draw(source)
+    return eye.ray(column, row, film, lens, 0.0)
 
 
 @pytest.mark.parametrize("kind", ["box", "tent", "gaussian"])
@@ -248,7 +249,7 @@ def test_a_kernel_gets_what_plain_python_gets(kind):
     sampler = make("independent", 1, 4)
     for pixel in range(5):
         compiled = ray_of(eye, pixel, 3, sampler.stream(pixel, 0, 0))
-        plain = eye.ray(pixel, 3, sampler.stream(pixel, 0, 0))
+        plain = eye_ray(eye, pixel, 3, sampler.stream(pixel, 0, 0))
         assert same_bits([*compiled[0], *compiled[1], compiled[2]], [*plain[0], *plain[1], plain[2]])
 
 
@@ -271,5 +272,5 @@ def test_a_camera_that_sees_nothing_is_refused(bad, message):
 
 
 def test_origin_and_direction_are_vectors():
-    o, ray, far = pinhole(d.Camera(), HERE).ray(0, 0, Fixed((0.5, 0.5)))
+    o, ray, far = eye_ray(pinhole(d.Camera(), HERE), 0, 0, Fixed((0.5, 0.5)))
     assert (type(o), type(ray), type(far)) == (Vec3, Vec3, float)

@@ -66,7 +66,8 @@ def record_rays(scene, camera, sampler, width, rows, spp, rays):
         for column in range(width):
             for sample in range(spp):
                 rng = sampler.stream(row * width + column, 0, sample)
-                o, direction, tfar = camera.ray(column, row, rng)
+                film, lens = camera.draw(rng)
+                o, direction, tfar = camera.ray(column, row, film, lens, 0.0)
                 put(rays, 2 * i, o, direction, tfar)
                 rays[2 * i + 1, 7] = np.float32(-1.0)
                 hit = intersect(scene, o, direction, 0.0, tfar)

@@ -269,7 +269,8 @@ def _lens(x: float, fov: float, width: int) -> Loop:
 @njit
 def fill_lens(camera, sampler, first, x0, z0, out):
     for i in range(len(out)):
-        o, d, _ = camera.ray(0, 0, sampler.stream(0, 0, first + i))
+        film, lens = camera.draw(sampler.stream(0, 0, first + i))
+        o, d, _ = camera.ray(0, 0, film, lens, 0.0)
         out[i] = 1.0 if o.x + d.x * ((z0 - o.z) / d.z) < x0 else 0.0
 
 
