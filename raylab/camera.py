@@ -193,7 +193,7 @@ class ThinLens(NamedTuple):
     down: Vec3
     near: float
     far: float
-    skip: float  # as in Pinhole, from the nearest point of the aperture
+    distant: bool  # whether a ray may start so far away that it advances first, see Pinhole.skip
     left: Vec3
     up: Vec3
     aperture: Any
@@ -212,15 +212,15 @@ class ThinLens(NamedTuple):
         d = toward - a * self.power
         o = self.origin + a
         start = self.near
-        if self.skip > 0.0:
-            start = max(start, self.skip / length(d))
+        if self.distant:
+            start = max(start, (length(o) - 2.0) / length(d))
         return round32(o + d * start), round32(d), max(TNEAR, self.far - start)
 
     def at(self, pose):
         """The camera at the local origin, moved to a pose."""
         return ThinLens(
             pose.p, turned(pose, self.corner), turned(pose, self.across), turned(pose, self.down), self.near, self.far,
-            max(0.0, length(pose.p) - self.aperture.reach() - 2.0), turned(pose, self.left), turned(pose, self.up),
+            length(pose.p) + self.aperture.reach() > 2.0, turned(pose, self.left), turned(pose, self.up),
             self.aperture, self.power, self.filter,
         )  # fmt: skip
 

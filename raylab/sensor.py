@@ -39,11 +39,18 @@ def make_camera(camera: d.Camera, placement: Placement, motion: Any = None) -> P
     radius = camera.aperture_radius * placement.scale
     aperture = make_aperture(radius, camera.aperture_blades, camera.aperture_rotation)
     return ThinLens(
-        **(eye._asdict() | {"skip": max(0.0, length(eye.origin) - aperture.reach() - 2.0)}),
+        origin=eye.origin,
+        corner=eye.corner,
+        across=eye.across,
+        down=eye.down,
+        near=eye.near,
+        far=eye.far,
+        distant=length(eye.origin) + aperture.reach() > 2.0,
         left=Vec3(*left),
         up=Vec3(*up),
         aperture=aperture,
         power=1.0 / (camera.focus_distance * placement.scale),
+        filter=eye.filter,
     )
 
 

@@ -1,4 +1,4 @@
-"""What a lens and motion cost: three scenes through a pinhole, through an aperture, and while something moves, in turns.
+"""What a lens and motion cost: three scenes, plain, through an aperture, and while something moves, in turns.
 
 python tests/benchmarks/blur.py
 """
