@@ -35,7 +35,7 @@ from raylab.grading.session import Limits
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the first moment that a zip file knows
 PLATFORM_LIMIT = 600.0  # s, of Gradescope by default
 SHARE = 0.8  # of it for the submission
-MARKS = (b"BEGIN SOLUTION", b"# exercise ")  # of solutions, in any file
+MARK = b" ".join((b"BEGIN", b"SOLUTION"))  # of a staff's own files; not in one piece here, for this file is inside
 PROGRAMS = ("setup.sh", "run_autograder")
 SETUP = """#!/usr/bin/env bash
 # Run once, as root, when the image is built: an interpreter of its own, which every user may read.
@@ -82,7 +82,7 @@ def build(assignment: Assignment, out: Path, secret: bytes) -> str:
         "assignment": assignment.id.encode(), "constraints.txt": (SOURCE / "constraints.txt").read_bytes(),
         "provisional.json": json.dumps(provisional({}).as_json(), indent=1).encode(),
     }  # fmt: skip
-    left += [f"{name}: {mark.decode().strip()}" for name, text in files.items() for mark in MARKS if mark in text]
+    left += [f"{name}: {MARK.decode()}" for name, text in files.items() if MARK in text]
     if left:
         raise UserError(f"a solution would be in the zip file: {left[0]}")
     _write(files, out)
