@@ -36,7 +36,6 @@ crosscheck: $(STAMP)  ## compare with Mitsuba 3, pixel by pixel (installs it)
 certify: $(STAMP)  ## false alarms, power and planted mistakes of the tests: docs/certificate.md (goes on where it was stopped)
 	$(BIN)/python -m pytest -n 2 -m certify
 	PYTHONPATH=tests $(BIN)/python -m mutants.certify
-	$(BIN)/python -m pytest -n 2 -m certify
 
 bench: $(STAMP)  ## measure the numbers of docs/performance.md on this machine
 	$(BIN)/python tests/benchmarks/all.py
