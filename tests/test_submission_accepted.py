@@ -137,3 +137,36 @@ def test_compiled_they_are_unbiased(name):
     technique = "one_light_uniform" if name == "one_of_them" else "direct"  # how large a sample may be
     report = Examiner().unbiased(technique, climbed.functions[name], trials.make("polygons", 5), delta=0.03)
     assert report.outcome == "PASS", str(report)
+
+
+SMALL = """
+    a, b = 1.5, (1, 2.5, 'x'); return b[1] * u * a
+    θ = u; Δx = 2.0 * θ; return Δx
+    def g(b): return b * u; return g(2.0)
+    b = [i * u for i in range(3)]; return b[0] + sum(b) + len(b)
+    a, b = (u, 1) if u > 0.5 else (1, u); return a if a > b else b
+    v = Vec3(u, 0, 0); v += v; v *= 2; v /= 2; v -= v * 0.5; return v.x + True
+    return int(u * 5) // 2 % 2 + min(u, 1, 0.5) + max((u, 2.0)) + round(u) + abs(-u) + divmod(5, 3)[0] + pow(u, 2)
+    b = np.zeros((2, 2)); b[0, 1] = u; return b[0, 1] + b.sum() + b.shape[0] + np.sum(b * b) + np.mean(b)
+    c = u; c, b = c, c; c: float = b; return c + b
+    t = 0.0; t += sum((u, 2 * u)) + math.tau; return t
+    return dot(AXES[1], Vec3(u, u, u)) * HALF * N + helper(u)
+    return u if u else 0
+    return helper(helper(u, 2.0), power=3.0)
+""".strip().splitlines()
+
+
+def test_small_ways_of_writing_are_accepted():
+    """Python and the compiler agree on each of them: that is what the ladder checks."""
+    head = (
+        "import math\nimport numpy as np\nfrom raylab.lecture import *\nN = 2 ** 3 - 1\nHALF = -1 / 2\n"
+        "AXES = (Vec3(1.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0))\n\n\ndef helper(u, power=2.0):\n    return u ** power\n\n\n"
+    )
+    text, tasks = head, []
+    for number, line in enumerate(SMALL):
+        body = line.strip().replace("def g(b): return b * u; ", "g = lambda b: b * u; ").replace("; ", "\n    ")
+        text += f"def f{number}(u):\n    {body}\n\n\n"
+        tasks.append(Task(str(number), f"f{number}", "map", "", ("u",), ("number",), ("number",)))
+    climbed = climb(text.encode(), tasks)
+    assert [str(f) for f in climbed.findings] == []
+    assert len(climbed.functions) == len(SMALL)

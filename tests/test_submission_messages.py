@@ -106,6 +106,9 @@ ROWS = [
     ("    return k_d * np.clip(N.z, 0.0, 1.0)\n", 7, "`numpy.clip` cannot be used", "`numpy.clip` cannot", "min(max("),
     ("    return k_d * np.fromfile('f')\n", 7, "`numpy.fromfile` cannot be used", "`numpy.fromfile` cannot", ""),
     ("    return k_d * N.__class__\n", 7, "`.__class__` is not known", "`.__class__` is not known", ""),
+    ("    return k_d * math.factorial(3)\n", 7, "", "`factorial` is not known to it", "write it out"),
+    ("    for i in (1, 2.0):\n        pass\n    return k_d\n", 7, "", "not all of one kind", "as floats"),
+    ("    a = str(N.x)\n    return k_d\n", 7, "`str` cannot be used", "", ""),
     ("    return k_d * eval('1')\n", 7, "`eval` cannot be used", "`eval` cannot be used", ""),
 ]  # fmt: skip
 

@@ -179,7 +179,7 @@ def interpret_map(
         value, last = run(source, task, lambda a=arguments: function(*a), number > 0)  # type: ignore[misc]
         results[number] = flatten(task, value, last)
         if not np.isfinite(results[number]).all():
-            odd.setdefault("nan", _nan(task, lambda a=arguments: function(*a), number, list(results[number])))  # type: ignore[misc]
+            odd.setdefault("nan", _nan(task, lambda a=arguments: function(*a), number, results[number].tolist()))  # type: ignore[misc]
     return results, list(odd.values())
 
 

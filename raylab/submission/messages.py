@@ -87,6 +87,10 @@ COMPILER: tuple[Row, ...] = (
     ),
     (r"No definition for lowering (?P<a>\w+)\.(?P<name>\w+) =", "this line changes `.{name}` of {a}.",
      "Make a new vector: Vec3(x, y, z)."),
+    (r"Unknown attribute '(?P<name>\w+)' of type Module", "`{name}` is not known to it.",
+     "Use another function, or write it out."),
+    (r"getiter with parameters \(Tuple\(", "the elements of this tuple are not all of one kind.",
+     "Write all of them as floats: (1.0, 2.0)."),
     (r"key.*dict|Dict", "dictionaries cannot be compiled.", "Use variables or tuples."),
     (r"unable to broadcast|broadcast", "the arrays on this line have different sizes.", ""),
 )  # fmt: skip
@@ -146,7 +150,8 @@ def line_of(raw: str, source: Source) -> int:
 def _cleaned(raw: str) -> str:
     """Without what concerns the machine and raylab's own frames."""
     kept = [line for line in raw.splitlines() if not re.search(r"raised from|<raylab>|REPL/exec|^\s*$", line)]
-    return re.sub(r"<function (\w+) at 0x\w+>", r"\1", re.sub(r"(/[\w.+-]+)+/(\w+\.py)", r"\2", "\n".join(kept)))
+    text = re.sub(r"<module '(\w+)'[^>]*>", r"\1", "\n".join(kept))
+    return re.sub(r"<function (\w+) at 0x\w+>", r"\1", re.sub(r"(/[\w.+-]+)+/(\w+\.py)", r"\2", text))
 
 
 def _as_python(raw: str) -> str:
@@ -165,7 +170,7 @@ def _as_python(raw: str) -> str:
             return "Vec3() takes"
     rewritten = (
         (
-            r"Unknown attribute '(\w+)' of type (\w+)",
+            r"Unknown attribute '(\w+)' of type (?!Module)(\w+)",
             lambda m: f"'{_python_type(m[2])}' object has no attribute '{m[1]}'",
         ),
         (r"tuple index out of range", lambda m: "IndexError: tuple index"),
@@ -176,7 +181,7 @@ def _as_python(raw: str) -> str:
             lambda m: f"{m[2] or 'function'}() missing 1 required positional argument: '{m[1]}'",
         ),
         (r"Cannot bind 'args=.*too many positional", lambda m: "function() takes fewer values than are given"),
-        (r"getiter with parameters \((.*)\)", lambda m: f"'{_python_type(m[1])}' object is not iterable"),
+        (r"getiter with parameters \((?!Tuple)(.*)\)", lambda m: f"'{_python_type(m[1])}' object is not iterable"),
         (r"Invalid use of (\w+).* with parameters", lambda m: f"'{m[1]}' object is not callable"),
     )  # fmt: skip
     for pattern, words in rewritten:

@@ -65,20 +65,17 @@ def _arguments(function: ast.FunctionDef, task: Task) -> tuple[str, list[tuple[i
     """How to call the function: by name where the slide's names are there, else by place."""
     wanted = task.arguments
     every = [a.arg for a in (*function.args.posonlyargs, *function.args.args)]
-    keyword_only = [
-        a.arg for a, d in zip(function.args.kwonlyargs, function.args.kw_defaults, strict=True) if d is None
-    ]
-    needed = every[: len(every) - len(function.args.defaults)] + keyword_only
+    needed = every[: len(every) - len(function.args.defaults)]
     if set(wanted) <= set(every) and set(needed) <= set(wanted):
         return ", ".join(f"{name}" for name in sorted(wanted, key=every.index)), []
     taken = every[: len(wanted)]
     others = [(i, a) for i, a in enumerate(taken) if a != wanted[min(i, len(wanted) - 1)]]
     misplaced = [a for _, a in others if a in wanted]
-    if len(taken) == len(wanted) and len(needed) <= len(wanted) and not misplaced and not keyword_only:
+    if len(taken) == len(wanted) and len(needed) <= len(wanted) and not misplaced:
         renamed = _list([f"`{a}` for `{wanted[i]}`" for i, a in others])
         return ", ".join(wanted), [(function.lineno, f"The slide has other names: you wrote {renamed}. It works.")]
     raise Problem(
-        f"`{function.name}` takes ({', '.join(every + keyword_only)}); it will be given ({', '.join(wanted)}).",
+        f"`{function.name}` takes ({', '.join(every)}); it will be given ({', '.join(wanted)}).",
         f"The line must be: def {function.name}({', '.join(wanted)}):",
         function.lineno,
     )

@@ -50,7 +50,9 @@ class Source:
 
     def namespace(self, extra: str = "", silent: bool = False) -> dict[str, Any]:
         """Run the definitions, and those of `extra`: a new namespace of plain functions; `silent` ones do not print."""
-        space = {"__builtins__": allowed.BUILT_INS | allowed.ERRORS, "__name__": "submission", **self.names}
+        # numpy looks for __import__ in the caller's builtins; the student's own text may not name it
+        known = allowed.BUILT_INS | allowed.ERRORS | {"__import__": __import__}
+        space = {"__builtins__": known, "__name__": "submission", **self.names}
         tree = ast.Module(body=list(self.functions.values()), type_ignores=[])
         exec(compile(_Silence().visit(copy.deepcopy(tree)) if silent else tree, FILE, "exec"), space)
         exec(compile(extra, "<raylab>", "exec"), space)
@@ -125,10 +127,11 @@ def _take_function(source: Source, node: ast.FunctionDef) -> None:
     node.decorator_list, node.returns = [], None
     if node.args.vararg or node.args.kwarg:
         raise Problem(f"`{node.name}` takes any number of arguments.", "Name them one by one.", node.lineno)
-    for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs):
+    if node.args.kwonlyargs:
+        raise Problem(f"`{node.name}` has a * among its arguments.", "Leave out the *.", node.lineno)
+    for argument in (*node.args.posonlyargs, *node.args.args):
         argument.annotation = None
     node.args.defaults = [_value(constant(source, d), d) for d in node.args.defaults]
-    node.args.kw_defaults = [d and _value(constant(source, d), d) for d in node.args.kw_defaults]
     source.functions[node.name] = node
 
 

@@ -7,6 +7,7 @@ nothing; an attribute must be listed. `raylab.submission.wall` asks the same of 
 from __future__ import annotations
 
 import ast
+import builtins
 import types
 from collections.abc import Iterator
 from typing import Any
@@ -170,7 +171,7 @@ def _instead(attribute: str) -> str:
 
 
 def _unknown(name: str, known: Any) -> Unavailable:
-    if name in dir(__builtins__) or name in ("exec", "eval", "open", "getattr"):
+    if hasattr(builtins, name):
         return Unavailable(
             f"`{name}` cannot be used in graded functions.", "Use the arguments and raylab.lecture only."
         )
