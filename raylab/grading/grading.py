@@ -119,6 +119,7 @@ def _grade(
         pairs = zip(grading.results.tests, assignment.properties, strict=True)
         grading.staff.append(hidden.run({own.id: partial(judged, test, own) for test, own in pairs}))
         grading.results.extra_data["token"] = getattr(judge, "token", "")
+        grading.results.leaderboard = getattr(judge, "leaderboard", list)()
         _name_causes(grading, assignment, session)
         grading.printed.append(session.output)
 
