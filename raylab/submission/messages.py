@@ -182,7 +182,7 @@ def _as_python(raw: str) -> str:
         ),
         (r"Cannot bind 'args=.*too many positional", lambda m: "function() takes fewer values than are given"),
         (r"getiter with parameters \((?!Tuple)(.*)\)", lambda m: f"'{_python_type(m[1])}' object is not iterable"),
-        (r"Invalid use of (\w+).* with parameters", lambda m: f"'{m[1]}' object is not callable"),
+        (r"Invalid use of (?!getiter)(\w+).* with parameters", lambda m: f"'{m[1]}' object is not callable"),
     )  # fmt: skip
     for pattern, words in rewritten:
         if found := re.search(pattern, raw):
