@@ -1,10 +1,11 @@
-"""What all tests have in common: their order, what needs the compiler, and the command line to run."""
+"""What all tests have in common: their order, what needs the compiler, the command line to run, and Mitsuba."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import pytest
 from helpers import COMPILED
@@ -48,3 +49,12 @@ def run(monkeypatch, capsys) -> Callable[..., Done]:
         return Done(left.value.code, *capsys.readouterr())
 
     return call
+
+
+@pytest.fixture(scope="session")
+def mitsuba() -> Any:
+    """Mitsuba 3, which only tests marked `crosscheck` ask for; its variant `scalar_rgb` needs no LLVM."""
+    import mitsuba
+
+    mitsuba.set_variant("scalar_rgb")
+    return mitsuba

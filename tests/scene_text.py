@@ -44,3 +44,19 @@ def bitmap(folder: Path, inside: str = "", name: str = "t.exr") -> Bitmap:
     result = shape(folder, f'<bsdf type="diffuse">{texture}</bsdf>').front.reflectance
     assert isinstance(result, Bitmap)
     return result
+
+
+# A picture of 4 x 4 pixels.
+LAMP_OVER_FLOOR = """<scene version="3.0.0">
+<integrator type="direct"/>
+<sensor type="perspective">
+  <transform name="to_world"><lookat origin="0,2,4" target="0,0,0" up="0,1,0"/></transform>
+  <film type="hdrfilm"><integer name="width" value="4"/><integer name="height" value="4"/><rfilter type="box"/></film>
+</sensor>
+<shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/></transform></shape>
+<shape type="rectangle">
+  <transform name="to_world"><rotate x="1" angle="90"/><translate y="2"/></transform>
+  <emitter type="area"><rgb name="radiance" value="2"/></emitter>
+</shape>
+</scene>
+"""

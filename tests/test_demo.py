@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from scene_text import LAMP_OVER_FLOOR
 
 import raylab
 from raylab.demo import demo
@@ -13,19 +14,6 @@ from raylab.description import Diffuse, Phong, Rectangle, SceneDescription
 from raylab.errors import UserError
 from raylab.slides import TABLE
 
-SCENE = """<scene version="3.0.0">
-<integrator type="direct"/>
-<sensor type="perspective">
-  <transform name="to_world"><lookat origin="0,2,4" target="0,0,0" up="0,1,0"/></transform>
-  <film type="hdrfilm"><integer name="width" value="4"/><integer name="height" value="4"/><rfilter type="box"/></film>
-</sensor>
-<shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/></transform></shape>
-<shape type="rectangle">
-  <transform name="to_world"><rotate x="1" angle="90"/><translate y="2"/></transform>
-  <emitter type="area"><rgb name="radiance" value="2"/></emitter>
-</shape>
-</scene>
-"""
 PARTS = (
     Exhibit(
         "A slide", "A <title>", "Words.", (Picture("One", "here", "area", 2), Picture("None", "gone", "area", 2)), True
@@ -37,7 +25,7 @@ PARTS = (
 @pytest.fixture
 def scenes(tmp_path):
     (tmp_path / "scenes" / "here").mkdir(parents=True)
-    (tmp_path / "scenes" / "here" / "scene.xml").write_text(SCENE)
+    (tmp_path / "scenes" / "here" / "scene.xml").write_text(LAMP_OVER_FLOOR)
     return tmp_path / "scenes"
 
 

@@ -211,14 +211,6 @@ def ratios(brdf, bsdf, off):
 NAMES = {GGX: "ggx", BECKMANN: "beckmann"}
 
 
-@pytest.fixture(scope="module")
-def mitsuba():
-    import mitsuba
-
-    mitsuba.set_variant("scalar_rgb")
-    return mitsuba
-
-
 def rgb(v):
     return {"type": "rgb", "value": [*v]}
 

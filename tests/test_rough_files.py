@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_crosscheck import agree, mitsuba  # noqa: F401 (a fixture)
+from crosscheck import agree
 
 from raylab import cli
 from raylab.description import Bitmap, RoughConductor, RoughPlastic
@@ -182,7 +182,7 @@ ROUGH = """
 
 
 @pytest.mark.crosscheck
-def test_rough_metal_and_plastic_give_mitsuba_s_picture(mitsuba, tmp_path):  # noqa: F811
+def test_rough_metal_and_plastic_give_mitsuba_s_picture(mitsuba, tmp_path):
     path = tmp_path / "rough.xml"
     board = Path(__file__).parents[1] / "reference_scenes" / "still_life" / "board.png"
     path.write_text(ROUGH.format(board=board))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_text import LAMP_OVER_FLOOR
 from scipy import stats
 
 import raylab
@@ -25,26 +26,12 @@ from raylab.study.results import COLUMNS
 from raylab.study.truth import Truth
 
 SIZE, SPP, REPEATS = 4, [1, 4, 16], 12
-SCENE = f"""<scene version="3.0.0">
-<integrator type="direct"/>
-<sensor type="perspective">
-  <transform name="to_world"><lookat origin="0,2,4" target="0,0,0" up="0,1,0"/></transform>
-  <film type="hdrfilm">
-    <integer name="width" value="{SIZE}"/><integer name="height" value="{SIZE}"/><rfilter type="box"/></film>
-</sensor>
-<shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/></transform></shape>
-<shape type="rectangle">
-  <transform name="to_world"><rotate x="1" angle="90"/><translate y="2"/></transform>
-  <emitter type="area"><rgb name="radiance" value="2"/></emitter>
-</shape>
-</scene>
-"""
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("scene")
-    (folder / "scene.xml").write_text(SCENE)
+    (folder / "scene.xml").write_text(LAMP_OVER_FLOOR)
     return folder
 
 
@@ -264,7 +251,7 @@ def test_bad_arguments(folder, named, said):
 
 
 def test_estimators_of_different_light_are_refused(tmp_path, monkeypatch):
-    both = SCENE.replace("</scene>", '<emitter type="constant"/></scene>')
+    both = LAMP_OVER_FLOOR.replace("</scene>", '<emitter type="constant"/></scene>')
     (tmp_path / "scene.xml").write_text(both)
     scene = raylab.load(tmp_path / "scene.xml")
     with pytest.raises(UserError, match="compute different light"):
