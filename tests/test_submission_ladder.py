@@ -39,6 +39,7 @@ def looked_at(source: str | bytes, task: Task = DIFFUSE) -> list[Finding]:
 
 
 def test_a_correct_file_gives_functions_that_agree_with_raylab():
+    """The whole ladder: two kernels are compiled, which takes some ten seconds."""
     heard: list[Finding] = []
     climbed = climb((HEAD + BOX + LIFTED).encode(), [DIFFUSE, SAMPLE], heard.append)
     assert climbed.findings == heard == []
