@@ -14,8 +14,9 @@ from raylab import cli
 
 # Files that take longest, longest first, so that in the end no worker is left with one of them.
 SLOW = (
-    "test_left_out", "test_mutants", "test_trials", "test_metamorphic", "test_closed_form_renders",
-    "test_closed_form_skies", "test_estimators", "test_motion_blur", "test_reference_scenes", "test_stats_sampler",
+    "test_hostile", "test_left_out", "test_reference_scenes", "test_closed_form_skies", "test_trials",
+    "test_closed_form_renders", "test_mutants", "test_motion_blur", "test_metamorphic", "test_session",
+    "test_submission_accepted", "test_lessons", "test_gradescope", "test_estimators", "test_stats_sampler",
     "test_study", "test_demo", "test_cli", "test_estimator_check", "test_figures",
 )  # fmt: skip
 

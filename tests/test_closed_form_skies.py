@@ -130,7 +130,7 @@ def test_phong_under_a_constant_sky(shade, cosine):
     check(render(sky_scene(d.ConstantEnvironment(LIGHT), material=material, n=N, view=view), shade), truth)
 
 
-@pytest.mark.parametrize("shade", ["env_brdf", "direct"])
+@pytest.mark.parametrize("shade", ["env_brdf", pytest.param("direct", marks=pytest.mark.certify)])
 def test_phong_under_a_gradient_sky(shade):
     """A mixture of 0.4 diffuse and 0.5 of a lobe of exponent 10 under 1.1 + 0.5 z, seen along the normal."""
     material = glossy(10.0, 0.5 * RHO, 0.4 * RHO)
