@@ -31,7 +31,7 @@ def mis_power(x, V, brdf, N, scene, rng):
     return mis(x, V, brdf, N, scene, rng, True)
 
 
-@njit
+@njit  # exercise a7.shade
 def mis(x, V, brdf, N, scene, rng, squared):
     """One sample of each light, one of the sky's brightness, one of the BRDF: sum of weight f / p."""
     result = black

@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 import click
 
 import raylab
-from raylab import commands_student, strategies
+from raylab import commands_staff, commands_student, strategies
 from raylab.errors import UserError
 from raylab.explain import explain, measured
 from raylab.image import Image
@@ -215,7 +215,7 @@ def demo_command(folder: Path, scenes: Path, threads: int | None) -> int:
     return 0 if demo(folder, scenes, threads) else INTERRUPTED
 
 
-for _command in commands_student.COMMANDS:
+for _command in [*commands_staff.COMMANDS, *commands_student.COMMANDS]:
     commands.add_command(_command)
 
 

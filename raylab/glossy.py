@@ -42,7 +42,7 @@ def glossy_jitter(x, V, brdf, N, scene, rng):
     return k_s * light_from(scene, x, w, N)
 
 
-@njit
+@njit  # exercise a5.shade
 def glossy_phong(x, V, brdf, N, scene, rng):
     """Slide "Creating glossy reflections": the math worked out to match Phong exactly.
 

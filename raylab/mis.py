@@ -16,13 +16,13 @@ def ratio(q, p):
     return 1.0 if q == p else q / p
 
 
-@njit
+@njit  # exercise a7.balance
 def balance(p, q):
     """The balance heuristic, p / (p + q): the weight of a technique of density p against one of density q."""
     return 1.0 / (1.0 + ratio(q, p)) if p > 0.0 else 0.0
 
 
-@njit
+@njit  # exercise a7.power
 def power(p, q):
     """The power heuristic with beta = 2, p^2 / (p^2 + q^2)."""
     r = ratio(q, p)

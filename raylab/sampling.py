@@ -59,7 +59,7 @@ def drop(n, w):
 # --- hemisphere, uniform: slide "Diffuse surface in env. by Monte Carlo" ---
 
 
-@njit
+@njit  # exercise a3.hemisphere
 def sample_hemisphere(N, u):
     """A direction uniform over the hemisphere around N: z = u1."""
     z = u[0]
@@ -80,7 +80,7 @@ def invert_hemisphere(N, w):
 # --- hemisphere, proportional to the cosine: the same slide ---
 
 
-@njit
+@njit  # exercise a3.cos_hemisphere
 def sample_cos_hemisphere(N, u):
     """A direction with density proportional to cos(theta) around N: z = sqrt(1 - u1)."""
     return lift(N, math.sqrt(1.0 - u[0]), math.sqrt(u[0]), u[1])
@@ -263,14 +263,14 @@ def invert_cone(axis, sin_max, w):
 # --- Phong lobe: slide "Creating glossy reflections" ---
 
 
-@njit
+@njit  # exercise a5.lobe
 def sample_phong_lobe(R, n, u):
     """A direction with density proportional to cos(alpha)^n around R: cos(alpha) = (1 - u1)^(1 / (n + 1))."""
     x = -math.expm1(math.log1p(-u[0]) / (n + 1.0))
     return lift(R, 1.0 - x, math.sqrt(x * (2.0 - x)), u[1])
 
 
-@njit
+@njit  # exercise a5.pdf
 def pdf_phong_lobe(R, n, w):
     """p(w) = (n + 1) / (2 pi) cos(alpha)^n, 1/sr."""
     return (n + 1.0) / (2.0 * PI) * cos_power(R, n, w)

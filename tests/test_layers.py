@@ -15,11 +15,11 @@ ORDER = [
     "solid_angle", "mis", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point",
     "light_shapes", "lights", "light_choice",
     "environment", "materials", "quadrics", "callbacks", "motion", "embree", "surface", "shadow",
-    "shade", "beyond", "glossy", "direct", "basic", "lecture", "camera", "keyframes", "triangles", "geometry",
+    "shade", "beyond", "glossy", "direct", "basic", "lecture", "lens", "camera", "keyframes", "triangles", "geometry",
     "emitters", "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe",
     "plain", "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "stats",
     "study", "figures", "demo", "trials", "submission", "estimator_check", "estimator_watch", "metamorphic", "testing",
-    "pytest_plugin", "grading", "commands_student", "cli",
+    "pytest_plugin", "grading", "commands_student", "commands_staff", "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
 NUMBA_INTERNALS |= {"submission/compile", "submission/wall"}

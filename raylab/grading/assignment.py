@@ -52,6 +52,8 @@ class Assignment:
     properties: tuple[Property, ...]
     scenes: dict[str, str]  # task id of a shade() -> starter scene
     diagnosis: dict[str, tuple[str, ...]]  # task id -> trials in which its variants are compared
+    docs: dict[str, str]  # task id -> docstring of the stub, where the solution's would give it away
+    needs: tuple[str, ...]  # functions of the package that its own checks call
     folder: Path
 
     @cached_property
@@ -91,11 +93,12 @@ def load(name: str | Path) -> Assignment:
 
 
 def _assignment(table: dict[str, Any], folder: Path) -> Assignment:
-    tasks, solutions, scenes, diagnosis = [], {}, {}, {}
+    tasks, solutions, scenes, diagnosis, docs = [], {}, {}, {}, {}
     for own in table["task"]:
         own = dict(own)
         solutions[own["id"]] = own.pop("solution")
         diagnosis[own["id"]] = tuple(own.pop("diagnosis", ()))
+        docs[own["id"]] = own.pop("doc", "")
         if "scene" in own:
             scenes[own["id"]] = own.pop("scene")
         tasks.append(Task.from_dict(own))
@@ -108,7 +111,7 @@ def _assignment(table: dict[str, Any], folder: Path) -> Assignment:
             raise KeyError(f"property {row['name']!r} is about task {row['task']!r}, which is not there")
     return Assignment(
         table["id"], table["title"], table["slide"], table["file"], tuple(tasks), solutions, tuple(properties),
-        scenes, diagnosis, folder,
+        scenes, diagnosis, docs, tuple(table.get("needs", ())), folder,
     )  # fmt: skip
 
 

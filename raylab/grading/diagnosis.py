@@ -31,10 +31,13 @@ NAMES: dict[tuple[str, float], str] = {
     ("r2", 1): "distance missing", ("cos_s", -1): "light cosine missing", ("cos_r", -1): "receiver cosine missing",
     ("p", 1): "pdf missing", ("p", 2): "pdf multiplied",
     ("radiance", -1): "radiance missing", ("k_d", -1): "k_d missing", ("f_r", -1): "f_r missing",
+    ("np1", 1): "exponent off by one", ("np2", -1): "exponent off by one", ("lobe", 1): "pdf missing",
+    ("lobe", -1): "f_r missing",
 }  # fmt: skip
 POWERS: dict[str, str] = {
     "r2": "distance power", "cos_s": "light cosine power", "cos_r": "receiver cosine power", "p": "pdf power",
     "radiance": "radiance power", "k_d": "k_d power", "f_r": "f_r power",
+    "np1": "exponent off by one", "np2": "exponent off by one", "lobe": "pdf power",
 }  # fmt: skip
 
 
@@ -229,9 +232,7 @@ def _distance(mean: Array, error: Array, other: Array, its: Array, scale: float)
 
 def _spreads(table: Table, spread: Array, v: int) -> float:
     """How differently single samples scatter, at most 1."""
-    from raylab.grading.table import FOR_MEANS as DRAWN
-
-    other = table.errors[v] * math.sqrt(DRAWN)
+    other = table.errors[v] * math.sqrt(table.drawn)
     with np.errstate(all="ignore"):
         off = np.abs(np.log(spread / other))
     off = off[np.isfinite(off)]

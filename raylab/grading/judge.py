@@ -17,11 +17,13 @@ import numpy as np
 import numpy.typing as npt
 
 from raylab import trials
+from raylab.grading import expected
 from raylab.grading.assignment import Assignment, Property
 from raylab.grading.source import Asked, Source
 from raylab.stats.betting import Claim
 from raylab.stats.budget import Budget
 from raylab.stats.claims import variance_is
+from raylab.stats.sampler_check import check_sampler
 from raylab.testing.deciding import CHANNELS, Decision, decide
 from raylab.trials import Trial
 
@@ -40,6 +42,7 @@ class Judged:
     points: float
     says: str
     seen: str = ""
+    variance: float | None = None  # relative to that of the technique, where it is asked for
     p_value: float | None = None  # of the first look at the mean, two-sided: even for right submissions
     samples: int = 0
     seconds: float = 0.0
@@ -56,6 +59,7 @@ class Judge:
         tests = float(len(assignment.properties))
         self.budget = Budget(entropy=entropy, tests=tests)
         self._p_value: float | None = None
+        self._variance_ratio: float | None = None
 
     @property
     def token(self) -> str:
@@ -68,12 +72,13 @@ class Judge:
 
     def judge(self, own: Property) -> Judged:
         """One property. What the source raises is for the caller: the submission's fault, or the grader's."""
-        start, self._p_value = time.perf_counter(), None
+        start, self._p_value, self._variance_ratio = time.perf_counter(), None, None
         outcome, seen, samples = getattr(self, f"_{own.claim}")(own)
         score = 0.0 if outcome == "FAIL" else own.points
         seconds = time.perf_counter() - start
         return Judged(
-            own.task, own.name, outcome, score, own.points, own.says, seen, self._p_value, samples, seconds
+            own.task, own.name, outcome, score, own.points, own.says, seen, self._variance_ratio, self._p_value,
+            samples, seconds,
         )  # fmt: skip
 
     # --- claims: each returns outcome, what was seen, samples ---
@@ -153,9 +158,43 @@ class Judge:
         found = variance_is(
             own.id, lambda n: draw(n) / scale, answer.variance[c], high=top, tolerance=tolerance, alpha=share.alpha
         )
-        ratio = float(first.var()) / scale**2 / answer.variance[c]
+        ratio = self._variance_ratio = float(first.var()) / scale**2 / answer.variance[c]
         seen = "" if found.outcome == "PASS" else f"the variance is {_times(np.array([ratio]))} what it should be"
         return found.outcome, seen, 2 * found.samples + FIRST
+
+    def _density(self, own: Property) -> tuple[str, str, int]:
+        """A sampler's points have the density that is due, around a random axis (`raylab.stats.sampler_check`)."""
+        share = self.budget.test(own.id)
+        rng = np.random.default_rng(share.child(0))
+        domain, pdf, before = expected.density(own.options["density"], own.options["domain"], rng)
+        drawn = 0
+
+        def sample(u: Array) -> Array:
+            nonlocal drawn
+            drawn += len(u)
+            return self.source.map(own.task, np.column_stack([np.tile(before, (len(u), 1)), u]))
+
+        found = check_sampler(sample, pdf, domain, one_to_one=False, phi2=2e-3, alpha=share.alpha, rng=rng)
+        wrong = [f for f in found if f.outcome == "FAIL" and f.name != "integral"]
+        unsure = any(f.outcome == "INCONCLUSIVE" for f in found)
+        outcome = "FAIL" if wrong else "INCONCLUSIVE" if unsure else "PASS"
+        return outcome, wrong[0].sentence if wrong else "", drawn
+
+    def _values(self, own: Property) -> tuple[str, str, int]:
+        """A plain function returns what it must, at random inputs."""
+        share = self.budget.test(own.id)
+        rows, due = expected.VALUES[own.options["expected"]](np.random.default_rng(share.child(0)))
+        found = self.source.map(own.task, rows)
+        size = np.abs(due).max(axis=1, keepdims=True) + 1e-6 * np.abs(due).max()
+        with np.errstate(all="ignore"):
+            wrong = ~(np.abs(found - due) <= expected.TOLERANCE * size).all(axis=1)
+        if not wrong.any():
+            return "PASS", "", len(rows)
+        i = int(np.argmax(wrong))
+        seen = (
+            f"{_row(rows[i])} gives {_row(found[i])}, expected {_row(due[i])}; so in {wrong.sum()} of {len(rows)} cases"
+        )
+        return "FAIL", seen, len(rows)
 
     def _asked(self, own: Property, trial: str, seed: int) -> tuple[Asked, Trial, trials.Answer]:
         made = trials.make(trial, seed)
@@ -184,6 +223,10 @@ def _worst(decision: Decision) -> str:
 
 def _widened(claim: Claim, factor: float) -> Claim:
     return replace(claim, low=claim.low * factor, high=claim.high * factor)
+
+
+def _row(values: Array) -> str:
+    return "(" + ", ".join(f"{v:.6g}" for v in values) + ")"
 
 
 def _times(ratio: Array) -> str:

@@ -74,7 +74,8 @@ def student_file(assignment: Assignment) -> str:
         f'functions are welcome. Try it with `raylab check {assignment.id}`, or `pytest`.\n"""\n',
         f"from raylab.lecture import {', '.join(used)}\n" if used else "import math\n",
     ]
-    return "\n".join(parts) + "".join(f"\n\n{function_stub(task, known[task.id])}" for task in assignment.tasks)
+    stubs = (function_stub(task, assignment.docs[task.id] or known[task.id].doc) for task in assignment.tasks)
+    return "\n".join(parts) + "".join(f"\n\n{stub}" for stub in stubs)
 
 
 def words(solution: Solution, task: Task) -> set[str]:
@@ -85,9 +86,9 @@ def words(solution: Solution, task: Task) -> set[str]:
     return (names | ({"Vec3"} if "vector" in task.gives else set())) & set(lecture.__all__) - set(task.withheld)
 
 
-def function_stub(task: Task, solution: Solution) -> str:
+def function_stub(task: Task, doc: str) -> str:
     """One function without its body."""
-    doc = solution.doc.replace("\n", "\n    ").replace("    \n", "\n")
+    doc = doc.replace("\n", "\n    ").replace("    \n", "\n")
     end = "\n    " if "\n" in doc else ""
     return (
         f"def {task.function}({', '.join(task.arguments)}):\n"
@@ -100,6 +101,11 @@ def function_stub(task: Task, solution: Solution) -> str:
 # --- what must not get out ---
 
 
+def squeezed(text: str) -> str:
+    """Without spaces, brackets and comments: what is left of a statement however it is broken into lines."""
+    return re.sub(r"[\s()]+", "", re.sub(r"#[^\n]*", "", text))
+
+
 def telling(node: ast.FunctionDef) -> set[str]:
     """The statements of a function that say something, in one way of writing."""
     lines = {ast.unparse(n) for n in ast.walk(node) if isinstance(n, ast.Assign | ast.AugAssign | ast.Return | ast.If)}
@@ -110,10 +116,13 @@ def telling(node: ast.FunctionDef) -> set[str]:
 def leaks(text: str, solved: Iterable[Solution]) -> list[str]:
     """The statements of solutions that a Python source holds, whatever its spaces, brackets and comments."""
     secret = set().union(*(telling(s.node) for s in solved))
+    whole = squeezed(text)
+    if not any(squeezed(line) in whole for line in secret):
+        return []
     try:
         tree = ast.parse(text)
     except SyntaxError:  # a page, not a program: line by line
-        squeezed = {re.sub(r"\s+", "", line) for line in text.splitlines()}
-        return sorted(s for s in secret if re.sub(r"\s+", "", s.splitlines()[0]) in squeezed)
+        lines = {squeezed(line) for line in text.splitlines()}
+        return sorted(s for s in secret if squeezed(s.splitlines()[0]) in lines)
     found = {line for node in functions(tree) for line in telling(node)}
     return sorted(found & secret)

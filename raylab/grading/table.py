@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
-PAIRED, FOR_MEANS = 48, 800  # samples: compared one by one; for the means
+PAIRED, FOR_MEANS = 48, 400  # samples: compared one by one; for the means
 SEED, TRIAL_SEED = 20261122, 4620  # of the random numbers, and of the scenes
 
 
@@ -34,6 +34,7 @@ class Table:
     features: Array
     alone: tuple[str, ...]
     fingerprint: str
+    drawn: int = FOR_MEANS  # samples behind each mean
 
     def write(self, path: Path) -> None:
         """Floats of 32 bits are enough to know a number again."""
@@ -42,7 +43,7 @@ class Table:
             path, trials=list(self.trials), causes=list(self.causes), structural=self.structural,
             samples=self.samples.astype(np.float32), means=self.means, errors=self.errors,
             names=["|".join(n) for n in self.names], features=self.features.astype(np.float32),
-            alone=list(self.alone), fingerprint=self.fingerprint,
+            alone=list(self.alone), fingerprint=self.fingerprint, drawn=self.drawn,
         )  # fmt: skip
 
     @classmethod
@@ -51,7 +52,7 @@ class Table:
             return cls(
                 tuple(map(str, z["trials"])), tuple(map(str, z["causes"])), z["structural"], z["samples"].astype(float),
                 z["means"], z["errors"], tuple(tuple(str(n).split("|")) for n in z["names"]),
-                z["features"].astype(float), tuple(map(str, z["alone"])), str(z["fingerprint"]),
+                z["features"].astype(float), tuple(map(str, z["alone"])), str(z["fingerprint"]), int(z["drawn"]),
             )  # fmt: skip
 
 
@@ -84,7 +85,7 @@ def make(task: str, trials: tuple[str, ...], paired: int = PAIRED, for_means: in
     return Table(
         trials, tuple(v.cause for v in rows), np.array([v.structural or v.cause == "none" for v in rows]),
         values[:, :, :paired], means, errors, tuple(n for n, _ in features), found, variants.ALONE[task],
-        variants.fingerprint(solution),
+        variants.fingerprint(solution), for_means,
     )  # fmt: skip
 
 
