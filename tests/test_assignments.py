@@ -12,9 +12,10 @@ from raylab.grading import report
 from raylab.grading.assignment import NAMES, load, root
 from raylab.grading.begin import begin, stub_of
 from raylab.grading.causes import CAUSES
+from raylab.grading.source import Interpreted
 from raylab.grading.stub import function_stub, leaks, solutions, telling
-from raylab.grading.table import Table, path_of
-from raylab.grading.variants import VARIANTS, edited, fingerprint
+from raylab.grading.table import SEED, TRIAL_SEED, Table, path_of
+from raylab.grading.variants import VARIANTS, alive, edited, fingerprint
 from raylab.submission.ladder import climb
 
 PRESENT = [name for name in NAMES if (root() / name / "assignment.toml").is_file()]
@@ -90,6 +91,10 @@ def test_the_table_of_variants_is_up_to_date(task):
     assert table.causes[0] == "none"
     with np.errstate(all="ignore"):
         size = np.abs(table.samples[0]).mean(axis=1, keepdims=True)
+        again = Interpreted({task: alive(SOLVED[task], SOLVED[task].text)})
+        for i, trial in enumerate(table.trials):
+            here = again.samples(task, trial, TRIAL_SEED, SEED, 0, 3)
+            np.testing.assert_allclose(here, table.samples[0, i, :3], rtol=1e-5, atol=1e-9)
         for cause, samples in zip(table.causes[1:], table.samples[1:], strict=True):
             off = np.nanmax(np.abs(samples - table.samples[0]) / size)
             assert off > 1e-3 or np.isnan(samples).any(), cause

@@ -200,7 +200,6 @@ VARIANTS: dict[str, tuple[Variant, ...]] = {
         _s("not mirrored", "reflect(V, N)", "V"),
         _s("V and L reversed", "reflect(V, N)", "-reflect(V, N)"),
         _s("normal of the triangle", "reflect(V, N)", "reflect(V, x.n)"),
-        _s("receiver cosine absolute", COS_W, "abs(dot(w, N))"),
         _s("normal of the triangle", COS_W, "max(0.0, dot(w, x.n))"),
         _s("not random", "rng.square()", "(0.5, 0.5)"),
         _s("not random", LOBE, "reflect(V, N)"),

@@ -104,14 +104,16 @@ class Surface:
 
 
 def surface(rng: np.random.Generator, glossy: bool, tilted: bool) -> Surface:
-    """Seen from an azimuth near 180; a tilted one leans by 25 to 35 degrees to the azimuth 180."""
+    """Seen from an azimuth near 180; a tilted one leans by 25 to 35 degrees to the azimuth 180.
+
+    A glossy one that is tilted has a wide lobe and is seen at a grazing angle, so that the horizon of N cuts the lobe.
+    """
     lean = rng.uniform(25, 35) if tilted else 0.0
-    N = unit(90.0 - lean, 180.0)
-    exponent = int(2 * rng.integers(1, 4) + 1)
+    grazing = glossy and tilted
+    exponent = 3 if grazing else int(2 * rng.integers(1, 4) + 1)
     specular = colour(rng, 0.1, 0.5) if glossy else BLACK
-    return Surface(
-        colour(rng, 0.1, 0.5), specular, exponent, N, unit(rng.uniform(35, 50), 180.0 + rng.uniform(-20, 20))
-    )
+    view = unit(rng.uniform(10, 16) if grazing else rng.uniform(35, 50), 180.0 + rng.uniform(-20, 20))
+    return Surface(colour(rng, 0.1, 0.5), specular, exponent, unit(90.0 - lean, 180.0), view)
 
 
 def put_up(
