@@ -293,7 +293,11 @@ def main(out: Path) -> None:
         first[planted.task] += bool(right[:1] == [True])
         among[planted.task] += any(right)
         if right[:1] != [True]:
-            rows.append(f"| {planted.task} | `{planted.name}` | {planted.causes[0]} | {', '.join(named) or 'nothing'} |".replace("\n", " "))
+            rows.append(
+                f"| {planted.task} | `{planted.name}` | {planted.causes[0]} | {', '.join(named) or 'nothing'} |".replace(
+                    "\n", " "
+                )
+            )
             print(rows[-1], flush=True)
     accused = [s for task, (_, styles) in STYLES.items() for s in styles if diagnosed(task, function(task, s))]
     total, count = Counter(p.task for p in corpus()), len(corpus())

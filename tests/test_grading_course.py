@@ -16,6 +16,8 @@ from raylab.grading.course_wheel import leaking, stage, without
 from raylab.grading.stub import solutions, student_file
 
 SOLVED = solutions()
+CERTIFY = pytest.mark.certify
+WHEELS = [["a1", "a3"], ["a7"], *(pytest.param(names, marks=CERTIFY) for names in (["a2"], ["a5"], ["a4", "a6"]))]
 
 
 def fake(assignment, entry, secret):
@@ -46,7 +48,7 @@ def test_a_class_is_graded_once_and_changes_are_shown(tmp_path, monkeypatch):
     (handed_in / "bob.py").write_text("xxx")
     course.grade_all(load("a1"), [handed_in], out, 2, said.append)
     assert sorted(graded) == ["ann", "bob"]
-    rows = list(csv.DictReader((out / "gradebook.csv").open()))
+    rows = list(csv.DictReader((out / "gradebook.csv").read_text().splitlines()))
     assert [(r["name"], r["score"], r["causes"]) for r in rows] == [
         ("ann", "20", ""),
         ("bob", "0.0", "a1.diffuse: black"),
@@ -60,7 +62,7 @@ def test_a_class_is_graded_once_and_changes_are_shown(tmp_path, monkeypatch):
     (handed_in / "ann.py").write_text("xxxxx")
     course.grade_all(load("a1"), [handed_in], out, 1, said.append)
     assert graded[2:] == ["ann"]
-    changes = list(csv.DictReader((out / "changes.csv").open()))
+    changes = list(csv.DictReader((out / "changes.csv").read_text().splitlines()))
     assert [(r["name"], r["before"], r["now"]) for r in changes] == [("ann", "20", "0.0")]
     assert "1 scores have changed, 1 of them to less" in said[-1]
 
@@ -85,7 +87,7 @@ def test_a_copy_is_seen_and_a_stub_is_not():
     assert likeness(student_file(own).encode(), own)["a1.diffuse"] < 0.2
 
 
-@pytest.mark.parametrize("names", [["a1", "a3"], ["a2"], ["a5"], ["a4", "a6"], ["a7"]], ids="-".join)
+@pytest.mark.parametrize("names", WHEELS, ids=lambda names: "-".join(names))
 def test_no_solution_is_in_what_a_course_wheel_is_made_of(tmp_path, names):
     own = [load(name) for name in names]
     changed = stage(own, tmp_path)

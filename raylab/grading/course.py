@@ -57,8 +57,8 @@ def _json(path: Path) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
-def entries(paths: Sequence[Path], out: Path) -> list[Entry]:
-    """One for each path; a folder of folders (or of .py and .zip files) stands for what is in it."""
+def entries(paths: Sequence[Path], out: Path, file: str = "shade.py") -> list[Entry]:
+    """One for each path; a folder without the `file` that is handed in stands for the folders and files in it."""
     found: list[Path] = []
     for path in paths:
         if not path.exists():
@@ -66,7 +66,7 @@ def entries(paths: Sequence[Path], out: Path) -> list[Entry]:
         inside = sorted(path.iterdir()) if path.is_dir() else []
         several = [p for p in inside if p.is_dir() and not p.name.startswith((".", "_"))]
         several += [p for p in inside if p.suffix in (".zip", ".py")]
-        whole = path.is_file() or any(p.suffix == ".py" for p in inside)
+        whole = path.is_file() or any(p.name.lower() == file.lower() for p in inside)
         found += [path] if whole or not several else several
     names = [p.stem if p.is_file() else p.name for p in found]
     twice = {name for name in names if names.count(name) > 1}
@@ -106,7 +106,7 @@ def grade_all(
     """Grade what is not graded yet; write the gradebook, the dashboard and what has changed."""
     from raylab.grading.dashboard import write_dashboard
 
-    secret, every = secret_of(out), entries(paths, out)
+    secret, every = secret_of(out), entries(paths, out, assignment.file)
     before = {e.name: e.results for e in every}
     todo = [e for e in every if again or e.staff.get("stamp") != stamp(e, secret, assignment)]
     if len(todo) < len(every):
