@@ -219,7 +219,7 @@ def _fork(name: str, plain: bool) -> tuple[int, int]:
 
 def _collect(running: dict[int, Any]) -> Iterator[dict[str, Any]]:
     """Those that have ended, or had to be ended."""
-    pid, _ = os.waitpid(-1, os.WNOHANG)
+    pid, _, usage = os.wait4(-1, os.WNOHANG)
     if not pid:
         time.sleep(0.02)
         late = [p for p, (_, _, start) in running.items() if time.monotonic() - start > PATIENCE]
@@ -230,11 +230,8 @@ def _collect(running: dict[int, Any]) -> Iterator[dict[str, Any]]:
     with os.fdopen(pipe, "rb") as file:
         text = file.read()
     seconds = time.monotonic() - start
-    yield (
-        json.loads(text)
-        if text
-        else {"name": name, "tests": [], "error": f"ended after {seconds:.0f} s without a word"}
-    )
+    said = json.loads(text) if text else {"tests": [], "error": f"ended after {seconds:.0f} s without a word"}
+    yield {"name": name} | said | {"processor": usage.ru_utime + usage.ru_stime}
 
 
 def main() -> None:
