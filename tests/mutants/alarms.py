@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import signal
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -95,7 +96,8 @@ def _gradings(n: int) -> Counter[str]:
 def gradings(n: int, jobs: int = 2) -> Iterator[Counter[str]]:
     """Outcomes of n more gradings, a few at a time; entropy is the system's."""
     part = 10
-    with ProcessPoolExecutor(jobs) as pool:
+    # Ctrl-C is the parent's; it ends the others
+    with ProcessPoolExecutor(jobs, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
         try:
             yield from pool.map(_gradings, [part] * -(-n // part))
         finally:
