@@ -193,7 +193,7 @@ def _why(result: dict[str, Any]) -> str:
     if "error" in result:
         return result["error"].strip().splitlines()[-1]
     biased = [t for t in tests_of(result) if "bias" in t]
-    small = f"its bias is {biased[0]['bias']:.2f} +- {biased[0]['bias_error']:.2f} %; " if biased else ""
+    small = f"its bias is {biased[0]['bias']:.2f} +- {biased[0].get('bias_error', math.nan):.2f} %; " if biased else ""
     return small + "; ".join(f"{t['test']} {t['outcome']} after {t['samples']}" for t in tests_of(result))
 
 
@@ -261,8 +261,9 @@ def _matrix(results: dict[str, Any]) -> str:
         (f"right code complained about, of {len(right)}", right),
     ):
         ours = sum(bool(killers(results[n])) for n in names)
-        theirs = [sum(seen_by(results[n], r) not in ("", "-") for n in names) for r in RIVALS]
-        lines.append(f"| {what} | {ours} | {' | '.join(map(str, theirs))} |")
+        said = [[seen_by(results[n], r) for n in names] for r in RIVALS]
+        theirs = [f"{sum(s not in ('', '-') for s in column)} of {sum(s != '' for s in column)}" for column in said]
+        lines.append(f"| {what} | {ours} | {' | '.join(theirs)} |")
     lines += ["", '"=" marks what is right, written another way; a blank is no test of that kind.', "",
               f"| mutant | what | raylab | {' | '.join(RIVALS)} |", "| --- " * (3 + len(RIVALS)) + "|"]  # fmt: skip
     for m in asked:
@@ -282,7 +283,8 @@ def _suite(measured: dict[str, Any]) -> str:
         f"{len(suite['claims'])} claims about functions in a file, as a student hands them in, at 1 %: "
         f"{sum(c[1] == 'PASS' for c in suite['claims'])} PASS, {sum(c[2] for c in suite['claims'])} samples, "
         f"**{suite['wall']:.1f} s** in a fresh pair of processes on {suite['processors']} processors, compiling "
-        f"included ({suite['load']:.1f} processes at work on average in the minute before its end). "
+        f"included; {suite['busy']:.1f} s of processor time ({suite['load']:.1f} processes at work on average in the "
+        "minute before its end). "
         f"Replay {suite['token']}.", "",
         "| claim | outcome | samples | s | s for scene and kernel |", "| --- " * 5 + "|",
     ]  # fmt: skip

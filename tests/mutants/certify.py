@@ -10,11 +10,13 @@ import argparse
 import json
 import os
 import platform
+import subprocess
 import sys
 import time
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
+from resource import RUSAGE_CHILDREN, getrusage
 from typing import Any
 
 from mutants import run as runner  # before raylab: its children must import the mutants' raylab, not this one
@@ -62,22 +64,15 @@ def keep(name: str, compute: Callable[[], Any]) -> None:
 
 def suite() -> dict[str, Any]:
     """Every claim of an assignment about right functions in a file, in a fresh process."""
-    import subprocess
-
     paths = os.pathsep.join([str(HERE), str(HERE / "tests")])
-    start = time.perf_counter()
-    ran = subprocess.run(
-        [sys.executable, "-m", "mutants.grading"],
-        env=os.environ | {"PYTHONPATH": paths},
-        capture_output=True,
-        text=True,
-    )
+    start, before = time.perf_counter(), getrusage(RUSAGE_CHILDREN)
+    command, environment = [sys.executable, "-m", "mutants.grading"], os.environ | {"PYTHONPATH": paths}
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True)
     ran.check_returncode()
-    return json.loads(ran.stdout) | {
-        "wall": time.perf_counter() - start,
-        "load": os.getloadavg()[0],
-        "processors": os.cpu_count(),
-    }
+    after, wall = getrusage(RUSAGE_CHILDREN), time.perf_counter() - start
+    busy = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    conditions = {"load": os.getloadavg()[0], "processors": os.cpu_count()}
+    return json.loads(ran.stdout) | {"wall": wall, "busy": busy} | conditions
 
 
 def conditions() -> str:

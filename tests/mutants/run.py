@@ -33,7 +33,7 @@ CAP = 1 << 23
 VARIANCES: dict[str, float] = {}  # of the right code by trial, which the parent fills in before it forks
 MAP_CAP = 500_000  # 250 / phi^2 for phi^2 = 5e-4: silence is a PASS there
 THEORY = {True: 4096, False: 200_000}  # independent samples from which the theory's prediction is made
-PATIENCE = 300  # seconds until a mutant "never returns"
+PATIENCE = 1200  # seconds until a mutant "never returns"
 GREY = 0.5  # radiance of what is measured in units of its truth
 KINDS = {
     "R": "range", "M": "mean", "V": "variance", "J": "Jacobian", "Q": "p of a sample is not pdf()",
