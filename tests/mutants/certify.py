@@ -35,7 +35,7 @@ def mutants(jobs: int) -> None:
     """All trials of the right code first, whose variances the z-test wants, then every mutant."""
     trials = sorted({t for m in BY_NAME.values() for t in m.trial.split("; ")})
     for names in ([f"correct:{trial}" for trial in trials], list(BY_NAME)):
-        done = {r["name"] for r in results() if not r.get("plain") or "plain only" in r}
+        done = {r["name"] for r in results() if "error" not in r and (not r.get("plain") or "plain only" in r)}
         for r in results():
             for t in r["tests"]:
                 if r["name"].startswith("correct:") and "variance" in t:
