@@ -1,4 +1,4 @@
-"""The commands of the staff: raylab grade, course-wheel, autograder."""
+"""The commands of the staff: raylab grade, course-wheel, autograder build, test and probe."""
 
 from __future__ import annotations
 
@@ -37,4 +37,61 @@ def course_wheel_command(names: tuple[str, ...], out: Path) -> None:
     click.echo(str(build([load(name) for name in names], out)))
 
 
-COMMANDS: tuple[click.Command, ...] = (grade_command, course_wheel_command)
+@click.group("autograder")
+def autograder_command() -> None:
+    """The package that grades an assignment on Gradescope."""
+
+
+@autograder_command.command("build")
+@NAME
+@click.option("-o", "out", metavar="ZIP", required=True, type=click.Path(path_type=Path, dir_okay=False),
+              help="The file to upload.")  # fmt: skip
+@click.option("--secret", "folder", metavar="DIR", default=".", type=click.Path(path_type=Path, file_okay=False),
+              help="Where the secret of the course is kept, or will be: the file `secret`.")  # fmt: skip
+def build_command(name: str, out: Path, folder: Path) -> None:
+    """Build it. The same raylab, ASSIGNMENT and secret give the same file; a solution inside is refused."""
+    from raylab.grading.assignment import load
+    from raylab.grading.course import secret_of
+    from raylab.grading.gradescope import build
+    from raylab.grading.grading import commitment
+
+    secret = secret_of(folder)
+    click.echo(f"{build(load(name), out, secret)}  {out}")
+    click.echo(f"publish before the deadline: {commitment(secret)} (SHA-256 of the secret)")
+
+
+@autograder_command.command("test")
+@click.argument("package", metavar="ZIP", type=click.Path(path_type=Path, dir_okay=False))
+@click.argument("submission", metavar="SUBMISSION", type=click.Path(path_type=Path, exists=True))
+@click.option("-o", "out", metavar="FILE", type=click.Path(path_type=Path, dir_okay=False), help="Keep results.json.")
+def test_command(package: Path, submission: Path, out: Path | None) -> None:
+    """Run ZIP on SUBMISSION here, in the layout of Gradescope, and say what it would show."""
+    import json
+
+    from raylab.errors import UserError
+    from raylab.grading.gradescope import try_out
+    from raylab.grading.results import points
+
+    trial = try_out(package, submission)
+    click.echo(trial.printed, err=True)
+    if trial.problems:
+        raise UserError(f"the results are not what Gradescope expects: {'; '.join(trial.problems)}")
+    if out:
+        out.write_text(json.dumps(trial.results, indent=1))
+    for row in trial.results["tests"]:
+        click.echo(f"{row['score']:g} of {row['max_score']:g}  {row['name']}")
+    click.echo(trial.results["output"])
+    click.echo(f"{points(trial.results):g} points, {trial.results['extra_data']['status']}, {trial.seconds:.0f} s")
+
+
+@autograder_command.command("probe")
+def probe_command() -> None:
+    """What this machine allows to keep a submission in: as JSON, `shut` for whether that is enough."""
+    import json
+
+    from raylab.grading.session import probe
+
+    click.echo(json.dumps(probe(), indent=1))
+
+
+COMMANDS: tuple[click.Command, ...] = (grade_command, course_wheel_command, autograder_command)

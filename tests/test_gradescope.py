@@ -7,13 +7,14 @@ import zipfile
 from dataclasses import replace
 
 import pytest
+from click.testing import CliRunner
 
+from raylab.cli import commands
 from raylab.errors import UserError
 from raylab.grading import assignment as assignments
 from raylab.grading import gradescope
 from raylab.grading.results import points
 
-pytest.importorskip("raylab.grading.course_wheel", reason="no course wheels")
 SECRET = b"s" * 32
 
 
@@ -91,6 +92,18 @@ def test_another_zip_is_refused(tmp_path):
         gradescope.try_out(tmp_path / "a.zip", tmp_path)
     with pytest.raises(UserError, match=r"a\.txt"):
         gradescope.try_out(tmp_path / "a.txt", tmp_path)
+
+
+def test_the_commands(package, tmp_path):
+    folder, out = tmp_path / "course", tmp_path / "a1.zip"
+    folder.mkdir()
+    (folder / "secret").write_bytes(SECRET)
+    run = CliRunner().invoke(commands, ["autograder", "build", "a1", "-o", str(out), "--secret", str(folder)])
+    assert out.read_bytes() == package.read_bytes(), run.output
+    (tmp_path / "submission").mkdir()
+    run = CliRunner().invoke(commands, ["autograder", "test", str(out), str(tmp_path / "submission")])
+    assert "expected a file shade.py, found nothing" in run.output
+    assert "0 points, graded" in run.output
 
 
 @pytest.mark.certify

@@ -68,7 +68,7 @@ run(sys.argv[1])' "$ROOT" ${RAYLAB_PACKAGE:+"$RAYLAB_PACKAGE"}
 
 def build(assignment: Assignment, out: Path, secret: bytes) -> str:
     """Write the zip file; its SHA-256. UserError if a solution would be inside."""
-    from raylab.grading.course_wheel import SOURCE, leaking, stage  # type: ignore[import-not-found]
+    from raylab.grading.course_wheel import SOURCE, leaking, stage
     from raylab.grading.stub import solutions
 
     with tempfile.TemporaryDirectory() as temporary:
