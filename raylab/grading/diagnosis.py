@@ -26,7 +26,7 @@ SAME = 2e-5  # relative: other orders of the same operations, and float32 in the
 STRAY = 1  # samples of a scene that rounding may bring to the other side of an edge
 FOR_MEANS = 1 << 13
 NOISE = 0.02  # of a mean, added to its standard errors
-PLAUSIBLE = 2.2  # root mean square of z over the scenes
+PLAUSIBLE = 3.5  # z in the scene that speaks most against it
 NAMES: dict[tuple[str, float], str] = {
     ("r2", 1): "distance missing", ("cos_s", -1): "light cosine missing", ("cos_r", -1): "receiver cosine missing",
     ("p", 1): "pdf missing", ("p", 2): "pdf multiplied",
@@ -93,7 +93,7 @@ def by_samples(table: Table, values: Array) -> list[Diagnosis]:
 def agree(x: Array, y: Array) -> bool:
     """All samples of every trial, but for strays, are the same."""
     with np.errstate(all="ignore"):
-        size = np.abs(y) + 1e-3 * np.nanmean(np.abs(y), axis=1, keepdims=True)
+        size = np.abs(y) + 1e-3 * np.mean(np.where(np.isfinite(y), np.abs(y), 0.0), axis=1, keepdims=True)
         same = (np.abs(x - y) <= SAME * size) | (np.isnan(x) & np.isnan(y))
     return bool(((~same.all(axis=2)).sum(axis=1) <= STRAY).all())
 
@@ -111,6 +111,8 @@ def _times_a_factor(table: Table, values: Array, v: int) -> list[Diagnosis]:
     if constant is not None:
         causes = [("none", "")] if abs(constant - 1.0) < SAME else _named_constant(constant)
         return _composed(table, v, causes, 0.5)
+    if not own:
+        return []
     powers, scale = _powers(table, np.stack([ratio[i] for i in own]), own)
     if powers is None:
         return []
@@ -180,7 +182,7 @@ def _named_constant(c: float) -> list[tuple[str, str]]:
         rest = [] if abs(c + 1.0) < SAME else _named_constant(-c)
         return [("negated", ""), *rest]
     if abs(c - 2.0) < 2 * SAME:
-        return [("counted twice", ""), ("factor", "2")]
+        return [("factor", "2"), ("counted twice", "")]
     return [("factor", words_of(c))]
 
 
@@ -213,21 +215,28 @@ def by_means(table: Table, values: Array) -> list[Diagnosis]:
         if z < PLAUSIBLE:
             found.append(Diagnosis(cause, 2.0 + z / 10.0 + spreads, text))
         elif table.structural[v]:
-            c = float(np.median(mean[table.means[v] != 0.0] / table.means[v][table.means[v] != 0.0]))
+            lit = np.isfinite(table.means[v]) & (table.means[v] != 0.0)
+            if not lit.any():
+                continue
+            c = float(np.median(mean[lit] / table.means[v][lit]))
             z = _distance(mean, error, table.means[v], table.errors[v], c)
             if c != 0.0 and z < PLAUSIBLE:
                 near = [("factor", _near(c))] if c > 0 else [("negated", "")]
-                found += _composed(table, v, near, 2.0 + z / 10.0 + spreads)
+                found += _composed(table, v, near, (1.05 if v == 0 else 2.0) + z / 10.0 + spreads)
     return found
 
 
 def _distance(mean: Array, error: Array, other: Array, its: Array, scale: float) -> float:
-    """Root mean square of the differences in units of what noise explains."""
+    """The difference in units of noise: its root mean square over the channels, in the scene where that is largest."""
     size = np.abs(other) + 1e-4 * np.abs(other).max(axis=0)
     sigma = np.sqrt(error**2 + (scale * its) ** 2 + (NOISE * scale * size) ** 2)
     with np.errstate(all="ignore"):
         z = (mean - scale * other) / sigma
-    return float(np.sqrt(np.nanmean(z**2))) if np.isfinite(z).any() else math.inf
+    return (
+        float(np.sqrt(np.mean(np.where(np.isfinite(z), z, 0.0) ** 2, axis=1)).max())
+        if np.isfinite(z).any()
+        else math.inf
+    )
 
 
 def _spreads(table: Table, spread: Array, v: int) -> float:
