@@ -123,7 +123,7 @@ def returns_nothing(x, k_d, N, scene, rng):
 
 
 def returns_negative_light(x, k_d, N, scene, rng):
-    return correct(x, k_d, N, scene, rng) - Vec3(0.0, 1e-3, 0.0)
+    return correct(x, k_d, N, scene, rng) - Vec3(0.0, 1e3, 0.0)
 
 
 def forgets_the_cosines_and_multiplies_by_pi(x, k_d, N, scene, rng):
