@@ -96,7 +96,6 @@ def measured() -> dict[str, Any]:
 def measurements(jobs: int) -> None:
     from mutants import alarms
 
-    keep("suite", suite)
     keep("measure", lambda: {str(alpha): alarms.by_change_of_measure(alpha, MEASURES) for alpha in (1e-6, 3e-9)})
     gradings(jobs)
     keep("power", lambda: alarms.power(REPEATS))
@@ -129,8 +128,9 @@ def main() -> None:
             path.unlink()
     try:
         if not options.report:
+            keep("suite", suite)
+            mutants(options.jobs)  # before this process has a raylab of its own
             measurements(options.jobs)
-            mutants(options.jobs)
     except KeyboardInterrupt:
         print("\nstopped; what is finished is kept")
     from mutants import certificate
