@@ -54,7 +54,7 @@ def write_dashboard(assignment: Assignment, every: Sequence[Entry], path: Path) 
         "<h2>p-values of right means, run time</h2>"
         "<p class='small'>Of submissions that are right p is spread evenly: another shape means that truth and grader "
         "disagree. Run time is that of a whole grading.</p>",
-        histogram(p_values, 0.0, 1.0, "p-value of the first look at the mean"),
+        histogram(p_values, 0.0, 1.0, "p, first look at the mean"),
         histogram(seconds, 0.0, max(seconds, default=1.0) * 1.01, "seconds"),
         "<h2>Variance</h2><p class='small'>Of one sample, times the variance of the technique; log scale.</p>",
         dots([(e.name, v) for e, r, _ in results for v in _variances(r)]),
