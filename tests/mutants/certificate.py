@@ -73,8 +73,9 @@ def write(folder: Path, measured: dict[str, Any]) -> Path:
 def _head(measured: dict[str, Any]) -> str:
     return (
         "# Certificate\n\n"
-        "What the statistical harness has been seen to do, made by `make certify`. Every number is of this run; what\n"
-        "was not run is called so. A FAIL of right code has probability at most 3.3e-9 for each test, by theorem; a\n"
+        "What the statistical harness has been seen to do, by `make certify`. A run that was stopped goes on where\n"
+        "it stood, so parts may come from different times; what was not run is called so. A FAIL of right code has\n"
+        "probability at most 3.3e-9 for each test, by theorem; a\n"
         "PASS of code that is off by 1 % or more at most 1e-3.\n\n" + measured.get("conditions", "")
     ).rstrip()
 
