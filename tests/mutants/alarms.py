@@ -1,8 +1,9 @@
-"""False alarms and power of the harness itself, measured: no rendering, only random numbers of known mean."""
+"""False alarms and power, measured: of the harness on random numbers of known mean, and of whole gradings."""
 
 from __future__ import annotations
 
 import math
+import multiprocessing
 import signal
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -95,13 +96,43 @@ def _gradings(n: int) -> Counter[str]:
 
 def gradings(n: int, jobs: int = 2) -> Iterator[Counter[str]]:
     """Outcomes of n more gradings, a few at a time; entropy is the system's."""
+    yield from _shared(_gradings, n, jobs)
+
+
+def _shared(grade: Callable[[int], Counter[str]], n: int, jobs: int) -> Iterator[Counter[str]]:
     part = 10
     # Ctrl-C is the parent's; it ends the others
-    with ProcessPoolExecutor(jobs, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
+    start = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_IGN)}
+    with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), **start) as pool:
         try:
-            yield from pool.map(_gradings, [part] * -(-n // part))
+            yield from pool.map(grade, [part] * -(-n // part))
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+
+
+# --- whole gradings of an assignment: the judge of `raylab grade`, and the function of the package ---
+
+
+def _graded(n: int) -> Counter[str]:
+    from raylab import shade
+    from raylab.grading import assignment
+    from raylab.grading.judge import Judge
+    from raylab.grading.source import InProcess
+
+    asked, seen = assignment.load("a1"), Counter[str]()
+    task = asked.tasks[0].id
+    for _ in range(n):
+        judge = Judge(asked, InProcess({task: shade.area_diffuse}))
+        outcomes = [judged.outcome for judged in judge.all([task])]
+        seen.update(outcomes)
+        seen["gradings"] += 1
+        seen["gradings with a FAIL"] += "FAIL" in outcomes
+    return seen
+
+
+def assignments(n: int, jobs: int = 2) -> Iterator[Counter[str]]:
+    """Outcomes of n more gradings of assignment a1: six properties, on scenes that follow from fresh entropy."""
+    yield from _shared(_graded, n, jobs)
 
 
 # --- power: predicted, and measured ---

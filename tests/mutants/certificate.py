@@ -86,22 +86,33 @@ def _alarms(measured: dict[str, Any]) -> str:
         lines += ["", "By change of measure (bets 1 to 5 of 14, whose share of alpha is 0.357 at most):", ""]
         lines += ["| alpha | measured / alpha | standard error |", "| --- | --- | --- |"]
         lines += [f"| {alpha} | {rate:.3f} | {error:.3f} |" for alpha, (rate, error) in measured["measure"].items()]
-    counts = measured.get("gradings")
-    if counts:
-        from raylab.stats.tails import rule_of_three
-
-        verdicts = sum(counts.get(o, 0) for o in ("PASS", "FAIL", "INCONCLUSIVE"))
-        fails = counts.get("FAIL", 0)
-        bound = rule_of_three(verdicts) if fails == 0 else math.nan
-        lines += [
-            "",
-            f"By brute force: {counts['gradings']} whole gradings of 34 claims, toy estimators that are right, fresh "
-            f"entropy: {verdicts} verdicts, of them {counts.get('PASS', 0)} PASS, {counts.get('INCONCLUSIVE', 0)} "
-            f"INCONCLUSIVE, {fails} FAIL; gradings with a FAIL: {counts.get('gradings with a FAIL', 0)}. At 95 % "
-            f"confidence fewer than {bound:.3g} of the verdicts, and {rule_of_three(counts['gradings']):.2g} of the "
-            "gradings, are false alarms (the theorem says 3.3e-9 and 1.2e-7).",
-        ]
+    lines += _brute(measured.get("gradings"), "34 claims about toy estimators that are right", "1.2e-7")
+    lines += _brute(
+        measured.get("assignments"), "assignment a1, its six properties judged as `raylab grade` does, of the right "
+        "answer, compiled, in this process and on new scenes each time", "1e-6"
+    )  # fmt: skip
     return "\n".join(lines) if len(lines) > 1 else "## False alarms\n\nnot run"
+
+
+def _brute(counts: dict[str, int] | None, of: str, theorem: str) -> list[str]:
+    """How many gradings, verdicts and false alarms, and what follows at 95 % confidence."""
+    if not counts:
+        return []
+    from raylab.stats.tails import rule_of_three
+
+    verdicts = sum(counts.get(o, 0) for o in ("PASS", "FAIL", "INCONCLUSIVE"))
+    fails = counts.get("FAIL", 0)
+    bounds = (
+        f"At 95 % confidence fewer than {rule_of_three(verdicts):.3g} of the verdicts, and "
+        f"{rule_of_three(counts['gradings']):.2g} of the gradings, are false alarms (the theorem says {theorem} for a "
+        "grading)."
+    )
+    return [
+        "",
+        f"By brute force: {counts['gradings']} whole gradings of {of}; fresh entropy: {verdicts} verdicts, of them "
+        f"{counts.get('PASS', 0)} PASS, {counts.get('INCONCLUSIVE', 0)} INCONCLUSIVE, {fails} FAIL; gradings with a "
+        f"FAIL: {counts.get('gradings with a FAIL', 0)}. " + (bounds if fails == 0 else "That must not be."),
+    ]
 
 
 def _power(measured: dict[str, Any], pictures: Path) -> str:

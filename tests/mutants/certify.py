@@ -24,7 +24,8 @@ from mutants.corpus import BY_NAME
 
 HERE = Path(__file__).resolve().parents[2]
 STATE, DOCS = HERE / "build" / "certify", HERE / "docs"
-GRADINGS, REPEATS, MEASURES = 6000, 1000, 200
+GRADINGS = {"gradings": 3000, "assignments": 3000}  # of toy estimators, and of assignment a1
+REPEATS, MEASURES = 1000, 200
 
 
 def results() -> list[dict[str, Any]]:
@@ -97,22 +98,23 @@ def measurements(jobs: int) -> None:
     from mutants import alarms
 
     keep("measure", lambda: {str(alpha): alarms.by_change_of_measure(alpha, MEASURES) for alpha in (1e-6, 3e-9)})
-    gradings(jobs)
+    for kind in GRADINGS:
+        gradings(kind, jobs)
     keep("power", lambda: alarms.power(REPEATS))
 
 
-def gradings(jobs: int) -> None:
+def gradings(kind: str, jobs: int) -> None:
     """Goes on from what has been counted before."""
     from mutants import alarms
 
-    path = STATE / "gradings.json"
+    path, n = STATE / f"{kind}.json", GRADINGS[kind]
     total = Counter(json.loads(path.read_text()) if path.exists() else {})
-    if total["gradings"] >= GRADINGS:
+    if total["gradings"] >= n:
         return
-    for seen in alarms.gradings(GRADINGS - total["gradings"], jobs):
+    for seen in getattr(alarms, kind)(n - total["gradings"], jobs):
         total += seen
         path.write_text(json.dumps(total))
-        print(f"\rgradings {total['gradings']}/{GRADINGS}", end="", flush=True)
+        print(f"\r{kind} {total['gradings']}/{n}", end="", flush=True)
     print()
 
 
