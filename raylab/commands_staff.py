@@ -16,12 +16,13 @@ NAME = click.argument("name", metavar="ASSIGNMENT")
               help="Results, gradebook and dashboard; what is there already is not graded again.")  # fmt: skip
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Submissions at a time.")
 @click.option("--again", is_flag=True, help="Grade all of them again, and say whose score changes.")
-def grade_command(name: str, paths: tuple[Path, ...], out: Path, jobs: int, again: bool) -> None:
+@click.option("--trust", is_flag=True, help="Grade although this machine cannot shut the jail: see autograder probe.")
+def grade_command(name: str, paths: tuple[Path, ...], out: Path, jobs: int, again: bool, trust: bool) -> None:
     """Grade SUBMISSIONS: folders, zip archives or .py files, or folders of those. Ctrl-C keeps what is done."""
     from raylab.grading.assignment import load
     from raylab.grading.course import grade_all
 
-    every = grade_all(load(name), paths, out, jobs, click.echo, again)
+    every = grade_all(load(name), paths, out, jobs, click.echo, again, trust)
     click.echo(f"{len(every)} submissions: {out / 'gradebook.csv'}, {out / 'dashboard.html'}")
 
 

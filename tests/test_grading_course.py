@@ -20,7 +20,7 @@ CERTIFY = pytest.mark.certify
 WHEELS = [["a1", "a3"], ["a7"], *(pytest.param(names, marks=CERTIFY) for names in (["a2"], ["a5"], ["a4", "a6"]))]
 
 
-def fake(assignment, entry, secret):
+def fake(assignment, entry, secret, library=None, trust=False):
     """Instead of a grading: results as they would be, from the length of the file."""
     entry.folder.mkdir(parents=True, exist_ok=True)
     good = len(entry.path.read_bytes()) % 2 == 0
@@ -41,7 +41,7 @@ def fake(assignment, entry, secret):
 
 def test_a_class_is_graded_once_and_changes_are_shown(tmp_path, monkeypatch):
     graded = []
-    monkeypatch.setattr(course, "grade_one", lambda a, e, s: (graded.append(e.name), fake(a, e, s)))
+    monkeypatch.setattr(course, "grade_one", lambda a, e, *more: (graded.append(e.name), fake(a, e, *more)))
     handed_in, out, said = tmp_path / "in", tmp_path / "out", []
     handed_in.mkdir()
     (handed_in / "ann.py").write_text("xx")
@@ -65,6 +65,18 @@ def test_a_class_is_graded_once_and_changes_are_shown(tmp_path, monkeypatch):
     changes = list(csv.DictReader((out / "changes.csv").read_text().splitlines()))
     assert [(r["name"], r["before"], r["now"]) for r in changes] == [("ann", "20", "0.0")]
     assert "1 scores have changed, 1 of them to less" in said[-1]
+
+
+def test_nobody_is_graded_where_the_jail_stays_open(tmp_path, monkeypatch):
+    graded = []
+    monkeypatch.setattr(course, "grade_one", lambda a, e, *more: (graded.append(e.name), fake(a, e, *more)))
+    monkeypatch.setattr("raylab.grading.session.probe", lambda: {"shut": False, "seccomp": False})
+    (tmp_path / "ann.py").write_text("xx")
+    with pytest.raises(UserError, match=r'cannot shut a jail .*"seccomp": false'):
+        course.grade_all(load("a1"), [tmp_path / "ann.py"], tmp_path / "out", 1, print)
+    assert graded == []
+    course.grade_all(load("a1"), [tmp_path / "ann.py"], tmp_path / "out", 1, print, trust=True)
+    assert graded == ["ann"]
 
 
 def test_submissions_are_found_and_named(tmp_path):

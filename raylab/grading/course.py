@@ -16,6 +16,7 @@ import os
 import secrets
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -101,9 +102,13 @@ def stamp(entry: Entry, secret: bytes, assignment: Assignment) -> str:
 
 
 def grade_all(
-    assignment: Assignment, paths: Sequence[Path], out: Path, jobs: int, say: Say, again: bool = False
-) -> list[Entry]:
-    """Grade what is not graded yet; write the gradebook, the dashboard and what has changed."""
+    assignment: Assignment, paths: Sequence[Path], out: Path, jobs: int, say: Say, again: bool = False,
+    trust: bool = False,
+) -> list[Entry]:  # fmt: skip
+    """Grade what is not graded yet; write the gradebook, the dashboard and what has changed.
+
+    `trust`: grade although this machine cannot shut the jail, if it cannot.
+    """
     from raylab.grading.dashboard import write_dashboard
 
     secret, every = secret_of(out), entries(paths, out, assignment.file)
@@ -114,11 +119,14 @@ def grade_all(
 
     def one(entry: Entry) -> None:
         start = time.monotonic()
-        grade_one(assignment, entry, secret)
+        grade_one(assignment, entry, secret, library, trust)
         score = sum(t["score"] for t in entry.results.get("tests", []))
         say(f"{entry.name}: {score:g} of {assignment.points:g}, {time.monotonic() - start:.0f} s")
 
-    with ThreadPoolExecutor(max(1, jobs)) as pool:
+    if todo and not trust:
+        refuse_an_open_jail()
+    with tempfile.TemporaryDirectory(prefix="raylab-") as folder, ThreadPoolExecutor(max(1, jobs)) as pool:
+        library = without_solutions(assignment, Path(folder))
         list(pool.map(one, todo))
     write_gradebook(assignment, every, out / "gradebook.csv")
     write_changes(before, every, out / "changes.csv", say)
@@ -126,13 +134,35 @@ def grade_all(
     return every
 
 
-def grade_one(assignment: Assignment, entry: Entry, secret: bytes) -> None:
+def refuse_an_open_jail() -> None:
+    """UserError where this machine cannot keep hostile code in."""
+    from raylab.grading.session import probe
+
+    jail = probe()
+    if not jail["shut"]:
+        raise UserError(
+            f"this machine cannot shut a jail around the submissions: {json.dumps(jail)}; expected Linux with seccomp, "
+            "and Landlock or root. --trust grades all the same, submissions that you trust"
+        )
+
+
+def without_solutions(assignment: Assignment, folder: Path) -> Path:
+    """A raylab for the jail, in a folder that every user may read: there are stubs in the place of the solutions."""
+    from raylab.grading.course_wheel import stripped
+
+    stripped([assignment], folder)
+    for path in (folder, *folder.rglob("*")):
+        path.chmod(0o755 if path.is_dir() else 0o644)
+    return folder
+
+
+def grade_one(assignment: Assignment, entry: Entry, secret: bytes, library: Path, trust: bool = False) -> None:
     """In a process of its own, which is killed if it does not end; what it leaves is valid whatever happens."""
     entry.folder.mkdir(parents=True, exist_ok=True)
     (entry.folder / "staff.json").unlink(missing_ok=True)
-    folders = [str(path) for path in (assignment.folder, entry.path, entry.folder)]
+    folders = [str(path) for path in (assignment.folder, entry.path, entry.folder, library)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "raylab.grading.one", *folders, stamp(entry, secret, assignment)],
+        [sys.executable, "-m", "raylab.grading.one", *folders, stamp(entry, secret, assignment), str(int(trust))],
         stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
     )  # fmt: skip
     try:

@@ -108,11 +108,20 @@ def leaking(paths: Iterable[Path], solved: Sequence[Solution]) -> list[str]:
     return found
 
 
-def stage(assignments: Sequence[Assignment], folder: Path) -> dict[str, list[str]]:
-    """Everything that is built, in a folder."""
+def stripped(assignments: Sequence[Assignment], folder: Path) -> dict[str, list[str]]:
+    """The package `folder`/raylab with stubs in the place of the solutions; which functions became stubs."""
     package = folder / "raylab"
     shutil.copytree(SOURCE / "raylab", package, ignore=shutil.ignore_patterns("__pycache__", "assignments"))
     changed = strip(package, assignments)
+    cli = package / "cli.py"
+    text = cli.read_text("utf-8").replace("commands_staff, ", "").replace("*commands_staff.COMMANDS, ", "")
+    cli.write_text(text, "utf-8")
+    return changed
+
+
+def stage(assignments: Sequence[Assignment], folder: Path) -> dict[str, list[str]]:
+    """Everything that is built, in a folder."""
+    package, changed = folder / "raylab", stripped(assignments, folder)
     for assignment in assignments:
         own = package / "assignments" / assignment.id
         (own / "variants").mkdir(parents=True)
@@ -122,9 +131,6 @@ def stage(assignments: Sequence[Assignment], folder: Path) -> dict[str, list[str
         for path in sorted((assignment.folder / "variants").glob("*.npz")):
             shutil.copyfile(path, own / "variants" / path.name)
         (own / "stub.py").write_text(student_file(assignment), "utf-8")
-    cli = package / "cli.py"
-    text = cli.read_text("utf-8").replace("commands_staff, ", "").replace("*commands_staff.COMMANDS, ", "")
-    cli.write_text(text, "utf-8")
     project = (SOURCE / "pyproject.toml").read_text("utf-8")
     project = project.replace('"**/*.html"', '"assignments/**/*", "**/*.html"')
     (folder / "pyproject.toml").write_text(project, "utf-8")

@@ -113,7 +113,7 @@ def run(root: str) -> None:
     graded = grade(
         assignments.load(name), folder / "submission", folder / "results" / "results.json",
         secret=(folder / "source" / "secret").read_bytes(), metadata=folder / "submission_metadata.json",
-        limits=Limits(total=SHARE * PLATFORM_LIMIT),
+        limits=Limits(total=SHARE * PLATFORM_LIMIT, must_be_shut=True),
     )  # fmt: skip
     print(f"graded in {time.monotonic() - start:.0f} s; isolation {json.dumps(graded.isolation)}")
     print(*graded.staff, sep="\n")
