@@ -44,6 +44,7 @@ umask 022
 cd /autograder/source
 command -v uv > /dev/null || python3 -m pip install --quiet uv
 export UV_PYTHON_INSTALL_DIR=/opt/python
+mkdir -p "$UV_PYTHON_INSTALL_DIR"  # uv may find a Python of the system instead
 uv venv --python 3.11 /opt/raylab
 uv pip install --python /opt/raylab/bin/python --constraint constraints.txt ./package pytest
 chmod -R a+rX /opt/python /opt/raylab
