@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 
 import blur
+import course
 import left_out
 import million
 import startup
@@ -12,7 +13,7 @@ import throughput
 
 
 def main() -> None:
-    for benchmark in (startup, million, throughput, left_out, blur):
+    for benchmark in (startup, million, throughput, left_out, blur, course):
         print(f"\n{benchmark.__name__}: {(benchmark.__doc__ or '').splitlines()[0]}", flush=True)
         benchmark.main()
     if importlib.util.find_spec("mitsuba") is None:
