@@ -169,6 +169,35 @@ def study_command(
     return 0 if result.complete else INTERRUPTED
 
 
+@commands.command("stress")
+@click.argument("names", nargs=-1, metavar="[CASE]...")
+@click.option("-o", "folder", metavar="DIR", required=True, type=click.Path(path_type=Path, file_okay=False),
+              help="Folder for the page.")  # fmt: skip
+@click.option("--markdown", metavar="FILE", type=click.Path(path_type=Path, dir_okay=False),
+              help="Write the table as Markdown as well.")  # fmt: skip
+@PROGRESS
+def stress_command(names: tuple[str, ...], folder: Path, markdown: Path | None, progress: bool | None) -> int:
+    """Run the extreme cases (all, or those named, such as A01 or B): what holds, and what the usual code does."""
+    from raylab.progress import StepBar
+    from raylab.stress import report
+    from raylab.stress.case import chosen
+    from raylab.stress.runner import run
+
+    wanted, rows = chosen(names), []
+    try:
+        with StepBar("stress", progress) as step:
+            for row in run(wanted):
+                rows.append(row)
+                step(len(rows), len(wanted), row.case.id)
+                if not row.held:
+                    _say(f"{row.case.id} does not hold: {row.case.setup}: {report.cells(row)[7]}")
+    except KeyboardInterrupt:
+        _say("stopped by Ctrl-C; the page shows what is done.")
+        markdown = None
+    click.echo(f"{report.summary(rows)} Wrote {report.write(rows, folder, markdown)}.")
+    return 0 if len(rows) == len(wanted) else INTERRUPTED
+
+
 @commands.command("figures")
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("-o", "folder", metavar="DIR", type=click.Path(path_type=Path, file_okay=False), help="Where to write.")

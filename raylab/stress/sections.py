@@ -1,0 +1,13 @@
+"""Sections: the modules that hold the cases."""
+
+from __future__ import annotations
+
+import importlib
+
+MODULES = ("solid_angles",)
+
+
+def load() -> None:
+    """Import them, which enters their cases."""
+    for name in MODULES:
+        importlib.import_module(f"raylab.stress.{name}")
