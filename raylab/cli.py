@@ -9,6 +9,7 @@ import json
 import sys
 import threading
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -60,7 +61,14 @@ click.version_option(raylab.__version__, message="raylab %(version)s")(commands)
 
 @commands.command("render")
 @SCENE
-@click.option("--shade", default="direct", show_default=True, help="A slide's function; see `raylab shades SCENE`.")
+@click.option(
+    "--shade",
+    default="direct",
+    show_default=True,
+    metavar="NAME|FILE",
+    help="A slide's function, see `raylab shades SCENE`; or FILE.py, your own, shown beside the reference.",
+)
+@click.option("--task", default="", metavar="ID", help="The task that FILE answers, such as a4.brdf, if unclear.")
 @click.option("--sampler", help=f"{', '.join(SAMPLERS)}; the scene's own by default.")
 @click.option("--spp", type=int, help="Samples per pixel; the scene's own by default.")
 @click.option("--seconds", type=float, help="Stop after this time instead.")
@@ -80,6 +88,7 @@ click.version_option(raylab.__version__, message="raylab %(version)s")(commands)
 def render_command(
     scene: Path,
     shade: str,
+    task: str,
     sampler: str | None,
     spp: int | None,
     seconds: float | None,
@@ -92,7 +101,7 @@ def render_command(
     explained: bool,
     progress: bool | None,
 ) -> int:
-    """Render SCENE with a slide's shade(); Ctrl-C keeps what is done."""
+    """Render SCENE with a slide's shade(), or your own; Ctrl-C keeps what is done."""
     from raylab.io import picture
     from raylab.progress import Bar
 
@@ -100,22 +109,31 @@ def render_command(
     for path in outputs:
         picture.check(path)
     loaded, load_seconds = _load(scene, parameters)
+    own = commands_student.own_shade(shade, task, loaded, spp, _say)
+    if own and not outputs:
+        outputs = (own.picture(loaded),)
     if any(path.suffix.lower() == ".png" for path in outputs):
         threading.Thread(target=_prepare_png, daemon=True).start()
-    with Bar(progress, seconds, relative_error) as bar:
+    with Bar(progress, seconds, relative_error) as bar, own.explained() if own else nullcontext():
         image = raylab.render(
-            loaded, shade, sampler=sampler, spp=spp, seconds=seconds, relative_error=relative_error,
-            seed=seed, threads=threads, progress=bar,
+            loaded, own.function if own else shade, sampler=sampler, spp=spp, seconds=seconds,
+            relative_error=relative_error, seed=seed, threads=threads, progress=bar,
         )  # fmt: skip
     for path in outputs:
         if lost := picture.write(image, path):
             _say(f"warning: {lost}")
     _warn_about(image)
-    result = measured(loaded, image, shade, load_seconds)
+    result = measured(loaded, image, own.name if own else shade, load_seconds)
     if explained:
-        click.echo(explain(loaded, shade, result["sampler"]), err=as_json)
-    click.echo(json.dumps(result, allow_nan=False) if as_json else _summary(result, outputs))
-    return 0 if image.complete else INTERRUPTED
+        click.echo(explain(loaded, result["shade"], result["sampler"]), err=as_json)
+    complete, said = image.complete, ""
+    if own and complete:
+        names = {name for name, _ in map(_parameter, parameters)}
+        with Bar(progress) as bar:
+            complete, said = commands_student.compare(own, loaded, image, names, threads, bar, outputs[0], result)
+    text = "\n".join(filter(None, (_summary(result, outputs), said)))
+    click.echo(json.dumps(result, allow_nan=False) if as_json else text)
+    return 0 if complete else INTERRUPTED
 
 
 @commands.command("shades")

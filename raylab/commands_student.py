@@ -1,10 +1,17 @@
-"""The commands of students: raylab new, check, replay."""
+"""The commands of students: raylab new, check, replay; and what raylab render does with a file of theirs."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
+
+from raylab.errors import UserError
+
+if TYPE_CHECKING:
+    from raylab.grading.own import Own
 
 NAME = click.argument("name", metavar="ASSIGNMENT")
 FILE = click.argument("path", metavar="[FILE]", required=False, type=click.Path(path_type=Path))
@@ -59,6 +66,40 @@ def found(path: Path | None, name: str, file: str) -> Path:
         if guess.exists():
             return guess
     return Path(name) / file
+
+
+def own_shade(shade: str, task: str, scene: Any, spp: int | None, say: Callable[[str], None]) -> Own | None:
+    """The function in a student's file, or None where `shade` is the name of a slide's."""
+    if not (shade.endswith(".py") or "/" in shade or Path(shade).is_file()):
+        if task:
+            raise UserError(f"--task is about a file; expected --shade FILE.py, got --shade {shade}")
+        return None
+    if spp == 1:
+        raise UserError("--spp 1: of one sample the noise is not known; to compare a picture, expected 2 or more")
+    from raylab.grading.own import Own
+
+    return Own.read(Path(shade), scene, task, say)
+
+
+def compare(
+    own: Own, scene: Any, image: Any, parameters: set[str], threads: int | None, progress: Any, picture: Path,
+    result: dict[str, Any],
+) -> tuple[bool, str]:  # fmt: skip
+    """Whether there was time for it, and what there is to say; `result` gets the numbers."""
+    try:
+        reference = own.reference(scene, image, parameters, threads, progress)
+    except KeyboardInterrupt:
+        return False, "Stopped by Ctrl-C before there was a reference; the picture is kept."
+    if reference is None:
+        return True, (
+            "There is no reference: this raylab has not the solution, and the picture that it keeps is that of "
+            f"{own.assignment.scenes.get(own.task.id, 'no scene')} as it was given, in its own size."
+        )
+    out = picture.with_name(f"{picture.stem}_compared.png")
+    comparison = own.compare(image, reference, scene, out)
+    result["comparison"] = comparison.to_dict()
+    wrote = f"Wrote {out}: yours, the reference ({reference.source}), the difference."
+    return True, "\n".join((comparison.numbers, comparison.verdict, wrote))
 
 
 COMMANDS = (new_command, check_command, replay_command)

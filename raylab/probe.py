@@ -32,6 +32,7 @@ from raylab.view import View
 
 Array = npt.NDArray[np.float64]
 BLOCK = 1 << 14  # calls that are worth a thread of their own
+SEEDS = (1 << 63) - 1  # the bits of a seed that count
 HEIGHT = 2.0**-8  # of the scene: how far off the surface the ray starts that finds a given point
 
 
@@ -180,7 +181,7 @@ class Probe:
 
         def own() -> tuple[Any, Any, Any]:
             data = self.scene.data._replace(tally=View(np.zeros(TALLIES, np.int64)))
-            return own_copy(data), self.scene.camera, samplers.make("independent", seed & ((1 << 63) - 1), 1)
+            return own_copy(data), self.scene.camera, samplers.make("independent", seed & SEEDS, 1)
 
         return chosen, own
 

@@ -8,13 +8,15 @@ from typing import Any
 
 from raylab.errors import UserError
 from raylab.grading import report
-from raylab.grading.assignment import Assignment
+from raylab.grading.assignment import Assignment, Property
 from raylab.grading.diagnosis import Diagnosis, by_samples, ranked
 from raylab.grading.intake import collect
 from raylab.grading.judge import Judge, Judged, refused
-from raylab.grading.source import InProcess, Interpreted
+from raylab.grading.raised import Raised, Watched
+from raylab.grading.source import Interpreted
 from raylab.grading.table import PAIRED, SEED, TRIAL_SEED, Table, path_of
-from raylab.submission.ladder import climb
+from raylab.submission.finding import Finding
+from raylab.submission.ladder import Climb, climb
 from raylab.submission.shape import ENTRY, check_shape
 from raylab.submission.source import read
 from raylab.submission.task import Task
@@ -66,6 +68,28 @@ def first_different(table: Table, values: Any, task: str) -> str:
     return f"{task}:{trial}:{number}"
 
 
+def verdict(judge: Judge, own: Property, climbed: Climb) -> Judged:
+    """One property; an ERROR is no FAIL, and neither is what nobody has written. May raise Raised."""
+    if own.task in climbed.functions:
+        return judge.judge(own)
+    errors = [f for f in climbed.of(own.task) if f.kind == "error"]
+    return refused(own, "ERROR", where(errors[0])) if errors else refused(own)
+
+
+def where(finding: Finding) -> str:
+    """In one line; all of it has been said."""
+    return f"line {finding.line}: {finding.sentence}" if finding.line else finding.sentence
+
+
+def sample_of(error: Raised, assignment: Assignment, path: Path) -> str:
+    """How to look at the sample that raises."""
+    trials = assignment.diagnosis[error.finding.task]
+    if error.trial not in trials:
+        return "It does so for some inputs only."
+    token = ":".join(map(str, (error.finding.task, trials.index(error.trial), *error.numbers)))
+    return f"Not in every sample; this is one: raylab replay {token} {path}"
+
+
 def check(assignment: Assignment, path: Path, say: Say, hint: int = 1, entropy: int | None = None) -> list[Judged]:
     """Say what there is to say; the verdicts."""
     source, tasks = source_of(path, assignment), assignment.tasks
@@ -83,11 +107,17 @@ def check(assignment: Assignment, path: Path, say: Say, hint: int = 1, entropy: 
     if running:
         say(f"{', '.join(t.id for t in running)}: runs in plain Python; now it is compiled and judged ...")
     climbed = climb(source, running, tell=lambda f: say(str(f)) if f.stage in ("compile", "cross-check") else None)
-    judge = Judge(assignment, InProcess(climbed.functions), entropy)
-    judged = []
+    climbed.findings[:0] = early.findings
+    judge = Judge(assignment, Watched(climbed.functions, source, tasks), entropy)
+    judged, raised = [], set[str]()
     for own in assignment.properties:
-        verdict = judge.judge(own) if own.task in climbed.functions else refused(own)
-        judged.append(verdict)
+        try:
+            judged.append(verdict(judge, own, climbed))
+        except Raised as error:
+            judged.append(refused(own, "ERROR", where(error.finding)))
+            if (text := str(error.finding)) not in raised:
+                raised.add(text)
+                say(f"{text}\n    {sample_of(error, assignment, path)}")
     say("")
     say(report.verdicts(judged))
     score, points = report.total(judged)

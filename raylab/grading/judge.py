@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -33,7 +32,10 @@ FIRST = 4096  # samples of the first look: a scale, and a p-value for the instru
 
 @dataclass(frozen=True)
 class Judged:
-    """What was found of one property. `outcome`: PASS, FAIL, INCONCLUSIVE (which costs nothing) or NOT ATTEMPTED."""
+    """What was found of one property.
+
+    `outcome`: PASS, FAIL, INCONCLUSIVE (which costs nothing); ERROR or NOT ATTEMPTED where there is nothing to judge.
+    """
 
     task: str
     name: str
@@ -64,11 +66,6 @@ class Judge:
     @property
     def token(self) -> str:
         return self.budget.token
-
-    def all(self, tasks: Sequence[str]) -> Iterator[Judged]:
-        """Every property, in the order of the rubric; those of tasks that are not in `tasks` have nothing to judge."""
-        for own in self.assignment.properties:
-            yield self.judge(own) if own.task in tasks else refused(own)
 
     def judge(self, own: Property) -> Judged:
         """One property. What the source raises is for the caller: the submission's fault, or the grader's."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import replace
 from pathlib import Path
 
 from raylab.grading.assignment import load
-from raylab.grading.check import source_of
+from raylab.grading.check import source_of, verdict
 from raylab.grading.judge import Judge, Judged, refused
-from raylab.grading.source import InProcess
+from raylab.grading.raised import Raised, Watched
 from raylab.submission.ladder import Climb, climb
 
 
@@ -20,16 +21,19 @@ def properties(name: str) -> list[str]:
 @functools.cache
 def _climbed(name: str, path: Path) -> tuple[Climb, Judge]:
     assignment = load(name)
-    climbed = climb(source_of(path, assignment), assignment.tasks)
-    return climbed, Judge(assignment, InProcess(climbed.functions))
+    source = source_of(path, assignment)
+    climbed = climb(source, assignment.tasks)
+    return climbed, Judge(assignment, Watched(climbed.functions, source, assignment.tasks))
 
 
 def judged(name: str, path: Path, which: str) -> Judged:
-    """The verdict on one property of the student's file."""
+    """The verdict on one property of the student's file; an error is a FAIL that says all there is to say."""
     climbed, judge = _climbed(name, path)
     own = next(p for p in judge.assignment.properties if p.id == which)
-    if own.task in climbed.functions:
-        return judge.judge(own)
-    stops = [f for f in climbed.of(own.task) if f.fatal]
-    outcome = "FAIL" if any(f.kind == "error" for f in stops) else "NOT ATTEMPTED"
-    return refused(own, outcome, "; ".join(str(f) for f in stops))
+    try:
+        found = verdict(judge, own, climbed)
+    except Raised as error:
+        return refused(own, "FAIL", str(error.finding))
+    if found.outcome != "ERROR":
+        return found
+    return replace(found, outcome="FAIL", seen="; ".join(str(f) for f in climbed.of(own.task) if f.kind == "error"))

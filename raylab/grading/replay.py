@@ -51,8 +51,12 @@ def replay(token: str, path: Path, say: Callable[[str], None], debug: bool = Fal
 
         found = pdb.Pdb().runcall(plain.call, function, number)
     else:
-        with Steps(source.decode("utf-8-sig").splitlines(), say):
-            found = plain.call(function, number)
+        try:
+            with Steps(source.decode("utf-8-sig").splitlines(), say):
+                found = plain.call(function, number)
+        except Exception as error:  # the student's; what was run has been said
+            say(f"raises {type(error).__name__}: {error}")
+            return
     say(f"result    {shown(found)}")
     table = table_of(assignment, name)
     if table is not None and (trial_seed, seed) == (TRIAL_SEED, SEED) and number < table.samples.shape[2]:

@@ -9,14 +9,14 @@ from raylab.grading.assignment import Assignment
 from raylab.grading.diagnosis import Diagnosis
 from raylab.grading.judge import Judged
 
-ORDER = {"FAIL": 0, "NOT ATTEMPTED": 1, "NOT GRADED": 1, "INCONCLUSIVE": 2, "PASS": 3}
+ORDER = {"ERROR": 0, "FAIL": 0, "NOT ATTEMPTED": 1, "NOT GRADED": 1, "INCONCLUSIVE": 2, "PASS": 3}
 
 
 def line(judged: Judged) -> str:
     """One property."""
     head = f"{judged.outcome:13} {judged.score:g} of {judged.points:g}  {judged.task}: {judged.name}"
-    if judged.outcome == "PASS":
-        return head
+    if judged.outcome in ("PASS", "ERROR", "NOT ATTEMPTED"):
+        return f"{head}\n    {judged.seen}" if judged.seen else head
     lines = [head, f"    {judged.says}"]
     if judged.seen:
         lines.append(f"    Seen: {judged.seen}.")

@@ -14,7 +14,7 @@ from typing import Any
 import numba
 import numpy as np
 import numpy.typing as npt
-from numba.core.errors import NumbaWarning
+from numba.core.errors import NumbaError, NumbaWarning
 
 from raylab.jit import OPTIONS, Compiled, entry_point
 from raylab.plain import Plain
@@ -30,6 +30,7 @@ from raylab.view import View
 
 STUDENT = OPTIONS | {"error_model": "python", "boundscheck": True}
 Array = npt.NDArray[np.float64]
+type_errors = NumbaError  # what the compiler says of a function, and nothing that a function raises as it runs
 
 
 def prepare(source: Source, task: Task, entry: str) -> Compiled:
@@ -61,8 +62,8 @@ def unset(source: Source, task: Task) -> list[Problem]:
 class explained:  # noqa: N801 (a context manager)
     """Turns what the compiler says into a Problem."""
 
-    def __init__(self, source: Source) -> None:
-        self.source = source
+    def __init__(self, source: Source, errors: type[Exception] = Exception) -> None:
+        self.source, self.errors = source, errors
 
     def __enter__(self) -> None:
         self.quiet = warnings.catch_warnings()
@@ -71,7 +72,7 @@ class explained:  # noqa: N801 (a context manager)
 
     def __exit__(self, kind: Any, error: BaseException | None, trace: types.TracebackType | None) -> None:
         self.quiet.__exit__(kind, error, trace)
-        if isinstance(error, Exception) and not isinstance(error, Problem):
+        if isinstance(error, self.errors) and not isinstance(error, Problem):
             raise explain_compiler(error, self.source) from None
 
 
