@@ -108,12 +108,21 @@ def test_polygon_does_not_depend_on_order_or_first_corner():
         np.testing.assert_allclose(forms.polygon(corners, n=N), expected, rtol=1e-14)
 
 
-def test_polygon_of_a_tiny_light_cancels_as_documented():
+def test_polygon_of_a_tiny_light_does_not_cancel():
     """A square of edge 2^-14 with its corner at (1/4, 1/8, 1): 3.2048185549430369e-9, computed with 50 digits."""
     for size, exact in ((2.0**-7, None), (2.0**-10, None), (2.0**-14, 3.2048185549430369e-9)):
         corners = np.array([0.25, 0.125, 1.0]) + size * np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.0)])
         expected = over_polygon(corners, Z)[0] if exact is None else exact
-        assert abs(forms.polygon(corners) / expected - 1.0) <= 8.0 * 2.0**-53 / size**2
+        assert abs(forms.polygon(corners) / expected - 1.0) <= 64.0 * 2.0**-53  # some thirty roundings on either side
+
+
+def test_polygon_has_no_step_where_it_changes_its_formula():
+    """Just below and above SMALL of the distance: Lambert's sum cancels to 8 * 2^-53 / size^2 there."""
+    for size in (0.019, 0.021):
+        corners = np.array([0.0, 0.0, math.sqrt(2.0)]) + size * np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.0)])
+        small = size * math.sqrt(2.0) < forms.SMALL * np.linalg.norm(corners[0])
+        assert small == (size < 0.02)
+        assert abs(forms.polygon(corners) / over_polygon(corners, Z)[0] - 1.0) <= 8.0 * 2.0**-53 / size**2
 
 
 def test_rectangle_formulas_are_polygons():

@@ -38,9 +38,16 @@ def worst(values: Iterable[Any], truths: Iterable[Any]) -> float:
 def triangle_solid_angle(a: Any, e1: Any, e2: Any) -> Any:
     """Van Oosterom and Strackee, of a corner and two edges as seen from the origin."""
     m = exact()
-    a, e1, e2 = (m.matrix([m.mpf(float(x)) for x in v]) for v in (a, e1, e2))
+    a, e1, e2 = (m.matrix([m.mpf(x) for x in v]) for v in (a, e1, e2))
     b, c = a + e1, a + e2
     dot = lambda p, q: sum(p[i] * q[i] for i in range(3))  # noqa: E731
     la, lb, lc = (m.sqrt(dot(v, v)) for v in (a, b, c))
     n = m.matrix([e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0]])
     return 2 * m.atan2(abs(dot(a, n)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+
+
+def rectangle_solid_angle(a: Any, e1: Any, e2: Any) -> Any:
+    """Of its two triangles; a, e1 and e2 as floats."""
+    m = exact()
+    far = [m.mpf(float(p)) + m.mpf(float(q)) + m.mpf(float(r)) for p, q, r in zip(a, e1, e2, strict=True)]
+    return triangle_solid_angle(a, e1, e2) + triangle_solid_angle(far, [-x for x in e1], [-x for x in e2])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 
-MODULES = ("solid_angles",)
+MODULES = ("solid_angles", "cones", "rectangles")
 
 
 def load() -> None:
