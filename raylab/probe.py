@@ -26,11 +26,12 @@ from raylab.pixels import radiance, send
 from raylab.render import default_threads
 from raylab.scene import Scene
 from raylab.strategies import strategy
-from raylab.surface import BACK, FRONT, TALLIES, intersect, round32
+from raylab.surface import BACK, FRONT, SHADOW_RAYS, TALLIES, intersect, round32
 from raylab.vec3 import Vec3, normalize
 from raylab.view import View
 
 Array = npt.NDArray[np.float64]
+Tally = npt.NDArray[np.int64]
 BLOCK = 1 << 14  # calls that are worth a thread of their own
 SEEDS = (1 << 63) - 1  # the bits of a seed that count
 HEIGHT = 2.0**-8  # of the scene: how far off the surface the ray starts that finds a given point
@@ -158,6 +159,12 @@ class Probe:
         draw = self.draws(seed, channel)
         return lambda samples, n: draw(samples * n).reshape(n, samples).mean(axis=1)
 
+    def rays(self, seed: int, n: int) -> int:
+        """How many rays the first n calls of shade() trace: `Image.report` counts the same ones as shadow rays."""
+        tally = np.zeros(TALLIES, np.int64)
+        self._kernel(seed, tally)(np.empty((n, 3)), 0)
+        return int(tally[SHADOW_RAYS])
+
     def found(self) -> tuple[Array, Array]:
         """The surface point in world coordinates, and its normal, where shade() is called."""
         if isinstance(self.place, Pixel):
@@ -169,25 +176,29 @@ class Probe:
         placement = self.scene.placement
         return place[0] / placement.scale + placement.centre, place[1]
 
-    def _kernel(self, seed: int) -> Callable[..., None]:
+    def _kernel(self, seed: int, tally: Tally | None = None) -> Callable[..., None]:
         if isinstance(self.place, Pixel):
-            return self._pixel_kernel(seed, self.place)
+            return self._pixel_kernel(seed, self.place, tally)
         self.found()
-        return self._point_kernel(seed)
+        return self._point_kernel(seed, tally)
 
-    def _common(self, seed: int) -> tuple[Any, Any]:
-        """Strategy, and a function that makes what each thread has of its own: (scene data, camera, sampler)."""
+    def _common(self, seed: int, tally: Tally | None) -> tuple[Any, Any]:
+        """Strategy, and a function that makes what each thread has of its own: (scene data, camera, sampler).
+
+        A `tally` that is given is that of one thread.
+        """
         chosen = strategy(self.shade, self.scene)
 
         def own() -> tuple[Any, Any, Any]:
-            data = self.scene.data._replace(tally=View(np.zeros(TALLIES, np.int64)))
+            counts = np.zeros(TALLIES, np.int64) if tally is None else tally
+            data = self.scene.data._replace(tally=View(counts))
             return own_copy(data), self.scene.camera, samplers.make("independent", seed & SEEDS, 1)
 
         return chosen, own
 
-    def _point_kernel(self, seed: int) -> Callable[..., None]:
+    def _point_kernel(self, seed: int, tally: Tally | None = None) -> Callable[..., None]:
         assert isinstance(self.place, Place)
-        chosen, own = self._common(seed)
+        chosen, own = self._common(seed, tally)
         placement = self.scene.placement
         o = Vec3(*placement.points(self.place.origin))
         d = Vec3(*(self.place.direction / np.linalg.norm(self.place.direction)))
@@ -203,8 +214,8 @@ class Probe:
 
         return run
 
-    def _pixel_kernel(self, seed: int, pixel: Pixel) -> Callable[..., None]:
-        chosen, own = self._common(seed)
+    def _pixel_kernel(self, seed: int, pixel: Pixel, tally: Tally | None) -> Callable[..., None]:
+        chosen, own = self._common(seed, tally)
 
         def arguments(values: Array, first: int) -> tuple[Any, ...]:
             data, camera, sampler = own()

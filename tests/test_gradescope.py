@@ -117,3 +117,6 @@ def test_a_trial_run_of_the_solution_gets_full_points(a1, package, tmp_path):
     trial = gradescope.try_out(package, tmp_path)
     assert trial.problems == []
     assert points(trial.results) == a1.points, trial.printed
+    (row,) = trial.results["leaderboard"]
+    assert row["name"] == "a1.diffuse: variance x rays"
+    assert 0.7 < row["value"] < 1.3  # of a right submission with the slide's technique; see tests/test_ranking.py

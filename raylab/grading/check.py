@@ -11,7 +11,8 @@ from raylab.grading import report
 from raylab.grading.assignment import Assignment, Property
 from raylab.grading.diagnosis import Diagnosis, by_samples, ranked
 from raylab.grading.intake import collect
-from raylab.grading.judge import Judge, Judged, refused
+from raylab.grading.judge import Judge
+from raylab.grading.judged import Judged, refused
 from raylab.grading.raised import Raised, Watched
 from raylab.grading.source import Interpreted
 from raylab.grading.table import PAIRED, SEED, TRIAL_SEED, Table, path_of
@@ -122,6 +123,8 @@ def check(assignment: Assignment, path: Path, say: Say, hint: int = 1, entropy: 
     say(report.verdicts(judged))
     score, points = report.total(judged)
     say(f"\n{score:g} of {points:g} points, by the properties that are graded; the grader draws other random numbers.")
+    for name, value, _ in judge.leaderboard():
+        say(f"{name} = {value:g}: that of one sample, relative to the slide's technique; less is better.")
     if hint < 3 and any(j.outcome == "FAIL" for j in judged):
         say(f"More is said by: raylab check {assignment.id} {path} --hint {hint + 1}")
     return judged

@@ -27,6 +27,7 @@ from typing import Any
 from raylab import __version__
 from raylab.errors import UserError
 from raylab.grading.assignment import Assignment
+from raylab.grading.ranking import column, ranked
 from raylab.io.atomic import replacing
 
 Say = Callable[[str], None]
@@ -187,14 +188,22 @@ def write_gradebook(assignment: Assignment, every: Iterable[Entry], path: Path) 
     """A line for each submission: its score, each property, the likeliest cause of each task."""
     with replacing(path) as temporary, open(temporary, "w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
-        rows.writerow(["name", "status", "score", "of", *(p.id for p in assignment.properties), "causes"])
+        ranks = [column(task) for task in ranked(assignment)]
+        rows.writerow(["name", "status", "score", "of", *(p.id for p in assignment.properties), *ranks, "causes"])
         for entry in every:
             tests = {t["name"]: t["score"] for t in entry.results.get("tests", [])}
             total = sum(tests.values())
             causes = entry.results.get("extra_data", {}).get("causes", {})
             named = "; ".join(f"{task}: {found[0]['cause']}" for task, found in causes.items() if found)
             scores = [tests.get(p.id, "") for p in assignment.properties]
-            rows.writerow([entry.name, outcome(entry), total, assignment.points, *scores, named])
+            values = leaderboard(entry.results)
+            efficient = [values.get(name, "") for name in ranks]
+            rows.writerow([entry.name, outcome(entry), total, assignment.points, *scores, *efficient, named])
+
+
+def leaderboard(results: dict[str, Any]) -> dict[str, float]:
+    """The values of the leaderboard by name."""
+    return {row["name"]: row["value"] for row in results.get("leaderboard", [])}
 
 
 def write_changes(before: dict[str, dict[str, Any]], every: Iterable[Entry], path: Path, say: Say) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from raylab.grading.assignment import Assignment
 from raylab.grading.copies import SUSPICIOUS
+from raylab.grading.ranking import DOUBTFUL
 
 if TYPE_CHECKING:
     from raylab.grading.course import Entry
@@ -22,6 +23,7 @@ tr + tr { border-top: 1px solid #ddd } .full { background: #dcefe0 } .none { bac
 svg { background: #fafafa; margin: .3em 1.5em .3em 0 } h2 { font-size: 1.1em; margin: 1.6em 0 .4em } .small { color: #666 }
 """
 BLUE, GREY = "#2f6f9f", "#888"
+BEST = 20  # of a leaderboard
 
 
 def write_dashboard(assignment: Assignment, every: Sequence[Entry], path: Path) -> None:
@@ -58,6 +60,7 @@ def write_dashboard(assignment: Assignment, every: Sequence[Entry], path: Path) 
         histogram(seconds, 0.0, max(seconds, default=1.0) * 1.01, "seconds"),
         "<h2>Variance</h2><p class='small'>Of one sample, times the variance of the technique; log scale.</p>",
         dots([(e.name, v) for e, r, _ in results for v in _variances(r)]),
+        *leaderboard([(e.name, row) for e, r, _ in results for row in r.get("leaderboard", [])]),
         "<h2>Submissions</h2>",
         table(assignment, results),
     ]
@@ -123,6 +126,25 @@ def dots(values: Sequence[tuple[str, float]]) -> str:
         for x, t in ((12, "1/10"), (316, "1"), (612, "10"))
     )
     return f"<svg width='660' height='80'>{''.join(rows)}{labels}</svg>"
+
+
+def leaderboard(rows: Sequence[tuple[str, dict[str, Any]]]) -> list[str]:
+    """For each task, who needs least: name and value, those that are hard to believe marked."""
+    parts = []
+    for title in dict.fromkeys(row["name"] for _, row in rows):
+        values = sorted((row["value"], name) for name, row in rows if row["name"] == title)
+        cells = [
+            f"<tr{' class=none' if value < DOUBTFUL else ''}><td>{i + 1}</td><td>{html.escape(name)}</td>"
+            f"<td>{value:.3g}</td></tr>"
+            for i, (value, name) in enumerate(values[:BEST])
+        ]
+        parts.append(f"<h3>{html.escape(title)}</h3><table>{''.join(cells)}</table>")
+    note = (
+        "<h2>Leaderboard</h2><p class='small'>Variance of one sample, times the rays that it traces; the variance is that "
+        f"of the slide's technique where it is 1. The rays are what the submission's process says: values below {DOUBTFUL:g} "
+        "are marked. No points follow from it.</p>"
+    )
+    return [note, *parts] if parts else []
 
 
 def table(assignment: Assignment, results: Sequence[tuple[Entry, dict[str, Any], dict[str, Any]]]) -> str:

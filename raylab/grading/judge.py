@@ -9,15 +9,15 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from raylab import trials
-from raylab.grading import expected
+from raylab.grading import expected, ranking
 from raylab.grading.assignment import Assignment, Property
+from raylab.grading.judged import Judged
 from raylab.grading.source import Asked, Source
 from raylab.stats.betting import Claim
 from raylab.stats.budget import Budget
@@ -30,29 +30,6 @@ Array = npt.NDArray[np.float64]
 FIRST = 4096  # samples of the first look: a scale, and a p-value for the instructor's histogram
 
 
-@dataclass(frozen=True)
-class Judged:
-    """What was found of one property.
-
-    `outcome`: PASS, FAIL, INCONCLUSIVE (which costs nothing); ERROR or NOT ATTEMPTED where there is nothing to judge.
-    """
-
-    task: str
-    name: str
-    outcome: str
-    score: float
-    points: float
-    says: str
-    seen: str = ""
-    variance: float | None = None  # relative to that of the technique, where it is asked for
-    p_value: float | None = None  # of the first look at the mean, two-sided: even for right submissions
-    samples: int = 0
-    seconds: float = 0.0
-
-    def to_dict(self) -> dict[str, Any]:
-        return asdict(self)
-
-
 class Judge:
     """Judges the properties of one submission."""
 
@@ -60,8 +37,10 @@ class Judge:
         self.assignment, self.source = assignment, source
         tests = float(len(assignment.properties))
         self.budget = Budget(entropy=entropy, tests=tests)
+        self.judged: list[Judged] = []
         self._p_value: float | None = None
         self._variance_ratio: float | None = None
+        self._scattered: dict[str, tuple[Asked, trials.Answer, int]] = {}  # by task: what its variance was asked of
 
     @property
     def token(self) -> str:
@@ -73,10 +52,16 @@ class Judge:
         outcome, seen, samples = getattr(self, f"_{own.claim}")(own)
         score = 0.0 if outcome == "FAIL" else own.points
         seconds = time.perf_counter() - start
-        return Judged(
+        judged = Judged(
             own.task, own.name, outcome, score, own.points, own.says, seen, self._variance_ratio, self._p_value,
             samples, seconds,
         )  # fmt: skip
+        self.judged.append(judged)
+        return judged
+
+    def leaderboard(self) -> list[tuple[str, float, str]]:
+        """(name, variance times rays, "asc") for each task that was found right; see `raylab.grading.ranking`."""
+        return ranking.rows(self.assignment, self.judged, self._scattered)
 
     # --- claims: each returns outcome, what was seen, samples ---
 
@@ -144,6 +129,7 @@ class Judge:
         asked, _, answer = self._asked(own, own.options["trial"], share.child(0))
         if answer.variance is None:
             raise ValueError(f"{own.id}: trial {own.options['trial']!r} knows no variance")
+        self._scattered[own.task] = asked, answer, share.child(3)
         c, tolerance = 1, own.options["tolerance"]
         first = asked.sample(share.child(1), FIRST)[:, c]
         scale = float(first.mean()) / answer.truth[c]
@@ -196,11 +182,6 @@ class Judge:
     def _asked(self, own: Property, trial: str, seed: int) -> tuple[Asked, Trial, trials.Answer]:
         made = trials.make(trial, seed)
         return Asked(self.source, own.task, trial, seed), made, made.answer(self.assignment.task(own.task).like)
-
-
-def refused(own: Property, outcome: str = "NOT ATTEMPTED", seen: str = "") -> Judged:
-    """A property of which nothing can be said, for there is nothing to judge."""
-    return Judged(own.task, own.name, outcome, 0.0, own.points, own.says, seen)
 
 
 def p_value(values: Array, truth: Array) -> float | None:

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from raylab.grading.assignment import load
 from raylab.grading.check import source_of, verdict
-from raylab.grading.judge import Judge, Judged, refused
+from raylab.grading.judge import Judge
+from raylab.grading.judged import Judged, refused
 from raylab.grading.raised import Raised, Watched
 from raylab.submission.ladder import Climb, climb
 

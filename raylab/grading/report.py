@@ -7,7 +7,7 @@ from typing import Any
 
 from raylab.grading.assignment import Assignment
 from raylab.grading.diagnosis import Diagnosis
-from raylab.grading.judge import Judged
+from raylab.grading.judged import Judged
 
 ORDER = {"ERROR": 0, "FAIL": 0, "NOT ATTEMPTED": 1, "NOT GRADED": 1, "INCONCLUSIVE": 2, "PASS": 3}
 

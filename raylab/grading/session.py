@@ -135,6 +135,11 @@ class Session:
         words = {"trial": trial, "trial_seed": trial_seed, "seed": seed, "first": first, "n": n}
         return self._numbers("samples", task, words, b"", (n, 3))
 
+    def rays(self, task: str, trial: str, trial_seed: int, seed: int, n: int) -> float:
+        """How many rays the first n samples trace, as the worker says; nobody can check it."""
+        words = {"trial": trial, "trial_seed": trial_seed, "seed": seed, "n": n}
+        return float(self._numbers("rays", task, words, b"", (1, 1))[0, 0])
+
     def map(self, task: str, rows: npt.ArrayLike, columns: int | None = None) -> Array:
         """A plain function, called with each row of (n, k) numbers: (n, m) numbers."""
         given = np.ascontiguousarray(rows, np.float64)

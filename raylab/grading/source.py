@@ -1,6 +1,7 @@
 """Source: where the judge's numbers come from: a jail (`raylab.grading.session`), or this very process.
 
 samples(task, trial, trial_seed, seed, first, n) -> (n, 3)     of a shade()
+rays(task, trial, trial_seed, seed, n) -> how many it says that it has traced for the first n of them
 map(task, rows (n, k)) -> (n, m)                               of a plain function
 """
 
@@ -25,6 +26,9 @@ class Source(Protocol):
 
     def samples(self, task: str, trial: str, trial_seed: int, seed: int, first: int, n: int) -> Array:
         """Samples first .. first + n - 1 of a shade() in a trial, (n, 3)."""
+
+    def rays(self, task: str, trial: str, trial_seed: int, seed: int, n: int) -> float:
+        """How many rays are said to be traced for the first n samples."""
 
     def map(self, task: str, rows: npt.ArrayLike) -> Array:
         """A plain function of each row."""
@@ -51,6 +55,10 @@ class InProcess:
     def samples(self, task: str, trial: str, trial_seed: int, seed: int, first: int, n: int) -> Array:
         made = self.trial(trial, trial_seed)
         return Probe(made.scene, self.functions[task], made.place).sample(seed, n, first)
+
+    def rays(self, task: str, trial: str, trial_seed: int, seed: int, n: int) -> float:
+        made = self.trial(trial, trial_seed)
+        return float(Probe(made.scene, self.functions[task], made.place).rays(seed, n))
 
     def map(self, task: str, rows: npt.ArrayLike) -> Array:
         return np.asarray(self.functions[task](np.asarray(rows, np.float64)), np.float64)
@@ -82,6 +90,9 @@ class Asked:
 
     def sample(self, seed: int, n: int, first: int = 0) -> Array:
         return self.source.samples(self.task, self.trial, self.trial_seed, seed, first, n)
+
+    def rays(self, seed: int, n: int) -> float:
+        return self.source.rays(self.task, self.trial, self.trial_seed, seed, n)
 
     def draws(self, seed: int, channel: int | None = None) -> Callable[[int], Array]:
         return Draws(lambda first, n: self.sample(seed, n, first), channel)

@@ -54,11 +54,17 @@ class Worker:
 
     def samples(self, words: Words, _: bytes) -> np.ndarray:
         """Of a shade() in a trial."""
+        return self._probe(words).sample(words["seed"], words["n"], words["first"])
+
+    def rays(self, words: Words, _: bytes) -> np.ndarray:
+        """How many of them its first samples trace."""
+        return np.array([[self._probe(words).rays(words["seed"], words["n"])]], np.float64)
+
+    def _probe(self, words: Words) -> Any:
         from raylab.probe import Probe
 
         trial = _trial(words["trial"], words["trial_seed"])
-        probe = Probe(trial.scene, self._function(words["task"]), trial.place, threads=1)
-        return probe.sample(words["seed"], words["n"], words["first"])
+        return Probe(trial.scene, self._function(words["task"]), trial.place, threads=1)
 
     def map(self, words: Words, blob: bytes) -> np.ndarray:
         """Of a plain function."""

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from raylab.grading.judge import Judged
+from raylab.grading.judged import Judged
 
 WARP = {
     "id": "toy.warp", "function": "warp", "kind": "map", "arguments": ["u"], "takes": ["pair"], "gives": ["vector"],
