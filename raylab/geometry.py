@@ -100,6 +100,11 @@ def check_matrix(shape: d.Shape) -> None:
         raise SceneError(f"shape {shape.name!r}: to_world squeezes the shape flat (its matrix is singular)")
 
 
+def is_mirrored(matrix: Array) -> bool:
+    """Is the determinant negative? Its sign is right where its size, the cube of a length, would over- or underflow."""
+    return bool(np.linalg.slogdet(matrix[:3, :3])[0] < 0.0)
+
+
 def quadric(shape: d.Sphere | d.Disk | d.Cylinder) -> QuadricArrays:
     """The affine map from the unit quadric to the shape."""
     if isinstance(shape, d.Disk):
@@ -168,7 +173,7 @@ def world_mesh(shape: d.Shape, warnings: list[str]) -> MeshArrays:
         size = np.linalg.norm(normals, axis=1, keepdims=True)
         normals = np.divide(normals, size, out=np.zeros_like(normals), where=size > 0)
     # A mirror turns the winding over but not the normals that the shape comes with; faces follow the normals.
-    inside_out = np.linalg.det(m[:3, :3]) < 0.0 and not (isinstance(shape, d.Mesh) and normals is None)
+    inside_out = is_mirrored(m) and not (isinstance(shape, d.Mesh) and normals is None)
     if shape.flip_normals != inside_out:
         faces = faces[:, ::-1]
     if shape.flip_normals and normals is not None:

@@ -38,7 +38,7 @@ def check(motion: d.Animation, what: str) -> None:
             raise SceneError(f"{what}: the matrix at time {time:g} must be finite and affine")
         if np.linalg.cond(m[:3, :3]) > 1e12:
             raise SceneError(f"{what}: the matrix at time {time:g} squeezes space flat (it is singular)")
-    if len(set(np.sign(np.linalg.det(matrices[:, :3, :3])))) > 1:
+    if len(set(np.linalg.slogdet(matrices[:, :3, :3])[0])) > 1:
         raise SceneError(f"{what}: keyframes must not turn a shape inside out: some mirror it and some do not")
 
 

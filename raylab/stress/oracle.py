@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 DIGITS = 60
 
 
@@ -51,3 +53,9 @@ def rectangle_solid_angle(a: Any, e1: Any, e2: Any) -> Any:
     m = exact()
     far = [m.mpf(float(p)) + m.mpf(float(q)) + m.mpf(float(r)) for p, q, r in zip(a, e1, e2, strict=True)]
     return triangle_solid_angle(a, e1, e2) + triangle_solid_angle(far, [-x for x in e1], [-x for x in e2])
+
+
+def gauss(n: int, low: float = 0.0, high: float = 1.0) -> tuple[Any, Any]:
+    """Nodes and weights of Gauss and Legendre between two ends."""
+    x, weights = np.polynomial.legendre.leggauss(n)
+    return low + 0.5 * (high - low) * (x + 1.0), 0.5 * (high - low) * weights

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 
-MODULES = ("solid_angles", "cones", "rectangles")
+MODULES = ("solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices")
 
 
 def load() -> None:
