@@ -18,11 +18,11 @@ from pathlib import Path
 
 from raylab.grading.faults import Cause, Fault, GraderFault
 from raylab.grading.jail import MB, Rules
+from raylab.grading.output import Output
 from raylab.grading.protocol import HEADER, Kind, ProtocolError, unpack_header
 
 TICK = 0.02  # s between two looks at a working process
 CHUNK = 1 << 16
-HEAD, TAIL = 48 << 10, 16 << 10  # bytes of what is printed, from the beginning and from the end
 ENVIRONMENT = {
     "LANG": "C.UTF-8", "MALLOC_ARENA_MAX": "2", "NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1", "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1", "NUMBA_SHOW_HELP": "0",
@@ -57,23 +57,6 @@ class Clock:
         now = time.monotonic()
         self.seen, self.last = self.seen + min(now - self.last, 1.0), now
         return self.seen
-
-
-class Output:
-    """What a process prints: the beginning and the end of it."""
-
-    def __init__(self) -> None:
-        self.head, self.tail, self.size = b"", b"", 0
-
-    def add(self, printed: bytes) -> None:
-        room = HEAD - len(self.head)
-        self.head, self.tail = self.head + printed[:room], (self.tail + printed[room:])[-TAIL:]
-        self.size += len(printed)
-
-    def __str__(self) -> str:
-        gap = self.size - len(self.head) - len(self.tail)
-        middle = f"\n[... {gap} bytes left out ...]\n".encode() if gap else b""
-        return (self.head + middle + self.tail).decode("utf-8", "replace")
 
 
 class Process:

@@ -28,24 +28,13 @@ from raylab.grading.faults import Fault, GraderFault
 from raylab.grading.jail import MB, Rules
 from raylab.grading.process import Budget, Process
 from raylab.grading.protocol import Kind, ProtocolError, pack, pack_words, unpack_words
+from raylab.grading.replies import KEYS, fault_of, findings_of
 
 Array = npt.NDArray[np.float64]
 Task = Any  # raylab.submission.task.Task, which is not imported here, or a mapping with its fields
 PACKAGE = Path(__file__).resolve().parents[1]
 SYSTEM = ("/lib", "/lib64", "/usr/lib", "/usr/lib64", "/etc/ld.so.cache", "/sys/devices/system/cpu")
 WIDTH = {"number": 1, "pair": 2, "vector": 3}  # of what a plain function takes and gives
-KEYS = ("stage", "task", "kind", "line", "text", "sentence", "advice", "detail")  # of a finding
-ERRORS = {
-    "ZeroDivisionError": "the function divided by zero",
-    "IndexError": "the function used an index that is out of range",
-    "MemoryError": "the function asked for more memory than there is",
-    "OverflowError": "a number became too large",
-    "RecursionError": "the function called itself too often",
-    "LookupError": "the function could not be compiled",
-    "TypeError": "the function returned something else than it should",
-    "TypingError": "the function could not be compiled",
-}
-LONGEST = 4000  # characters of a text that a worker sends
 
 
 @dataclass(frozen=True)
@@ -157,7 +146,7 @@ class Session:
     def _climb(self, tasks: list[str]) -> list[dict[str, Any]]:
         words = {"do": "load", "tasks": [self.tasks[task] for task in tasks]}
         try:
-            found = _clean(self._ask(words, self.source, None, *tasks))
+            found = findings_of(self._ask(words, self.source, None, *tasks))
         except ProtocolError as error:
             raise self._died(Fault("protocol", f"the program sent {error}", self.output), *tasks) from None
         self._loaded.update(tasks)
@@ -179,7 +168,7 @@ class Session:
         try:
             kind, reply = process.exchange(self._number, request, expected, budget)
             if kind == Kind.FAULT:
-                raise _fault(unpack_words(reply), str(process.output))
+                raise fault_of(unpack_words(reply), str(process.output))
         except ProtocolError as error:
             raise self._died(Fault("protocol", f"the program sent {error}", self.output), *tasks) from None
         except Fault as fault:
@@ -243,23 +232,3 @@ def interpreter() -> tuple[str, ...]:
 
 def _plain(task: Task) -> Mapping[str, Any]:
     return asdict(task) if is_dataclass(task) and not isinstance(task, type) else dict(task)
-
-
-def _fault(words: Any, output: str) -> Fault:
-    """What went wrong, in our words: those of the program could tell what it was asked."""
-    if not isinstance(words, dict):
-        raise ProtocolError("no account of an error")
-    sentence = ERRORS.get(str(words.get("error")), "the function raised an error")
-    return Fault("error", sentence, f"{_short(words.get('error'))}: {_short(words.get('text'))}\n{output}")
-
-
-def _clean(reply: bytes) -> list[dict[str, Any]]:
-    """Findings as a list of flat objects, whoever has sent them."""
-    words = unpack_words(reply)
-    if not isinstance(words, list) or not all(isinstance(finding, dict) for finding in words):
-        raise ProtocolError("no list of findings")
-    return [{key: _short(finding.get(key)) for key in KEYS} for finding in words[:200]]
-
-
-def _short(value: Any) -> Any:
-    return value[:LONGEST] if isinstance(value, str) else value if isinstance(value, int) else None

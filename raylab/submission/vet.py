@@ -18,33 +18,39 @@ from raylab.submission.finding import Problem
 from raylab.submission.source import Source
 from raylab.submission.task import Task
 
-_REFUSED: dict[type, tuple[str, str]] = {
-    ast.Import: ("An import stands inside the function.", "Move it to the top of the file."),
-    ast.ImportFrom: ("An import stands inside the function.", "Move it to the top of the file."),
-    ast.With: ("`with` cannot be used in graded functions; files cannot be opened.", "Use the arguments only."),
-    ast.Global: (
-        "A shade() cannot change globals: a sample must depend on its arguments only.", "Return what you have found.",
+_ROWS: tuple[tuple[tuple[type, ...], str, str], ...] = (
+    ((ast.Import, ast.ImportFrom), "An import stands inside the function.", "Move it to the top of the file."),
+    ((ast.With,), "`with` cannot be used in graded functions; files cannot be opened.", "Use the arguments only."),
+    (
+        (ast.Global,), "A shade() cannot change globals: a sample must depend on its arguments only.",
+        "Return what you have found.",
     ),
-    ast.Nonlocal: ("An inner function cannot change variables of the outer one.", "Return what it has found."),
-    ast.Try: ("`try` cannot be used in graded functions.", "Test before dividing (if p > 0.0:) instead of catching."),
-    ast.ClassDef: ("Classes cannot be used inside a function.", "Use numbers, tuples and Vec3."),
-    ast.Yield: ("`yield` cannot be used in graded functions.", "Add up in a for loop and return the sum."),
-    ast.YieldFrom: ("`yield` cannot be used in graded functions.", "Add up in a for loop and return the sum."),
-    ast.Await: ("`await` cannot be used in graded functions.", ""),
-    ast.AsyncFunctionDef: ("`async` cannot be used in graded functions.", "Write def."),
-    ast.AsyncFor: ("`async` cannot be used in graded functions.", "Write for."),
-    ast.AsyncWith: ("`async` cannot be used in graded functions.", ""),
-    ast.GeneratorExp: (
-        "A generator (... for ... in ...) cannot be compiled.", "Write a for loop that adds up: result += ...",
+    ((ast.Nonlocal,), "An inner function cannot change variables of the outer one.", "Return what it has found."),
+    (
+        (ast.Try,), "`try` cannot be used in graded functions.",
+        "Test before dividing (if p > 0.0:) instead of catching.",
     ),
-    ast.Dict: ("Dictionaries cannot be used in graded functions.", "Use variables or tuples."),
-    ast.DictComp: ("Dictionaries cannot be used in graded functions.", "Use variables or tuples."),
-    ast.Set: ("Sets cannot be used in graded functions.", "Use tuples."),
-    ast.SetComp: ("Sets cannot be used in graded functions.", "Use tuples."),
-    ast.Delete: ("`del` cannot be used in graded functions.", "Leave the variable alone."),
-    ast.NamedExpr: ("`:=` cannot be compiled.", "Write the assignment on a line of its own."),
-    ast.Match: ("`match` cannot be compiled.", "Write if and elif."),
-}  # fmt: skip
+    ((ast.ClassDef,), "Classes cannot be used inside a function.", "Use numbers, tuples and Vec3."),
+    (
+        (ast.Yield, ast.YieldFrom), "`yield` cannot be used in graded functions.",
+        "Add up in a for loop and return the sum.",
+    ),
+    ((ast.Await,), "`await` cannot be used in graded functions.", ""),
+    (
+        (ast.AsyncFunctionDef, ast.AsyncFor, ast.AsyncWith), "`async` cannot be used in graded functions.",
+        "Write def, for and if.",
+    ),
+    (
+        (ast.GeneratorExp,), "A generator (... for ... in ...) cannot be compiled.",
+        "Write a for loop that adds up: result += ...",
+    ),
+    ((ast.Dict, ast.DictComp), "Dictionaries cannot be used in graded functions.", "Use variables or tuples."),
+    ((ast.Set, ast.SetComp), "Sets cannot be used in graded functions.", "Use tuples."),
+    ((ast.Delete,), "`del` cannot be used in graded functions.", "Leave the variable alone."),
+    ((ast.NamedExpr,), "`:=` cannot be compiled.", "Write the assignment on a line of its own."),
+    ((ast.Match,), "`match` cannot be compiled.", "Write if and elif."),
+)  # fmt: skip
+_REFUSED = {node: (sentence, advice) for nodes, sentence, advice in _ROWS for node in nodes}
 
 
 def called(source: Source, name: str) -> set[str]:

@@ -92,7 +92,7 @@ PYTHON: tuple[Row, ...] = (
     ),
     (r"'Vec3' object is not subscriptable", "A Vec3 has no index.", "Its components are v.x, v.y and v.z."),
     (
-        r"'(builtin_function_or_)?method' object is not subscriptable",
+        r"'(builtin_function_or_)?method' object is not subscriptable|cannot unpack non-iterable (method|function)",
         "This is a function; it must be called first.",
         "Write rng.square() with brackets.",
     ),
@@ -154,11 +154,6 @@ PYTHON: tuple[Row, ...] = (
         r"too many values to unpack \(expected (?P<n>\d+)",
         "On the left of = stand {n} names, on the right more values.",
         "rng.square() gives two numbers; light.sample(x, u) gives y and p_y.",
-    ),
-    (
-        r"cannot unpack non-iterable (method|function)",
-        "This is a function; it must be called first.",
-        "Write rng.square() with brackets.",
     ),
     (r"cannot unpack non-iterable (?P<a>\w+)", "{a} cannot be taken apart into several names.", ""),
     (r"'(?P<a>[^']+)' object is not iterable", "A for loop cannot run over {a}.", "Write for i in range(n):"),
