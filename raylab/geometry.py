@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from raylab import defects, keyframes, quadrics
 from raylab import description as d
-from raylab import keyframes, quadrics
 from raylab.errors import SceneError
 from raylab.keyframes import Shutter
-from raylab.triangles import degenerate_faces
+from raylab.triangles import proportions
 
 Array = npt.NDArray[np.float64]
 
@@ -34,6 +34,7 @@ class MeshArrays:
     faces: npt.NDArray[np.uint32]
     normals: Array | None
     uv: Array | None
+    finest: Array  # (m,) the shortest edge of each triangle
     kind: str = "mesh"
     segments: int = 0  # straight parts of its motion; vertices and normals stand one after the other at each end
     error: float = 0.0  # how far its vertices may stand off their true path
@@ -76,19 +77,20 @@ class Placement:
 def gather(
     shapes: Sequence[d.Shape], shutter: Shutter = (0.0, 0.0)
 ) -> tuple[list[MeshArrays], list[QuadricArrays], list[str]]:
-    """World-space meshes and quadrics of all shapes, and warnings about what had to be left out."""
+    """World-space meshes and quadrics of all shapes, and warnings about what is wrong with them."""
     meshes: list[MeshArrays] = []
     quads: list[QuadricArrays] = []
     warnings: list[str] = []
     for shape in shapes:
         check_matrix(shape)
-        if isinstance(shape, d.Sphere | d.Disk | d.Cylinder):
-            quads.append(quadric(shape))
-        else:
-            meshes.append(
-                world_mesh(shape, warnings) if shape.motion is None else moving_mesh(shape, shutter, warnings)
-            )
-    return meshes, quads, warnings
+        with np.errstate(over="ignore", invalid="ignore"):  # what is out of range is refused, here or below
+            if isinstance(shape, d.Sphere | d.Disk | d.Cylinder):
+                quads.append(quadric(shape))
+            elif shape.motion is None:
+                meshes.append(world_mesh(shape, warnings))
+            else:
+                meshes.append(moving_mesh(shape, shutter, warnings))
+    return meshes, quads, warnings + defects.coincident(meshes)
 
 
 def check_matrix(shape: d.Shape) -> None:
@@ -96,6 +98,8 @@ def check_matrix(shape: d.Shape) -> None:
     m = np.asarray(shape.to_world)
     if m.shape != (4, 4) or not np.all(np.isfinite(m)) or not np.array_equal(m[3], [0, 0, 0, 1]):
         raise SceneError(f"shape {shape.name!r}: to_world must be a finite affine (4, 4) matrix, got\n{m}")
+    if np.abs(m).max() > defects.RANGE:
+        raise SceneError(f"shape {shape.name!r}: to_world reaches {np.abs(m).max():.3g}, beyond {defects.RANGE:.2g}")
     if np.linalg.cond(m[:3, :3]) > 1e12:
         raise SceneError(f"shape {shape.name!r}: to_world squeezes the shape flat (its matrix is singular)")
 
@@ -109,7 +113,7 @@ def quadric(shape: d.Sphere | d.Disk | d.Cylinder) -> QuadricArrays:
     """The affine map from the unit quadric to the shape."""
     if isinstance(shape, d.Disk):
         return QuadricArrays(shape, quadrics.DISK, shape.to_world, np.eye(4))
-    if not (shape.radius > 0.0 and math.isfinite(shape.radius)):
+    if not 0.0 < shape.radius <= defects.RANGE:
         raise SceneError(f"shape {shape.name!r}: radius must be positive and finite, got {shape.radius}")
     local = np.eye(4)
     if isinstance(shape, d.Sphere):
@@ -178,11 +182,11 @@ def world_mesh(shape: d.Shape, warnings: list[str]) -> MeshArrays:
         faces = faces[:, ::-1]
     if shape.flip_normals and normals is not None:
         normals = -normals
-    thin = degenerate_faces(world, faces)
-    if thin.any():
-        warnings.append(f"shape {shape.name!r}: {int(thin.sum())} degenerate triangles of {len(faces)} left out")
-        faces = faces[~thin]
-    return MeshArrays(shape, world, np.ascontiguousarray(faces, np.uint32), normals, uv, kind)
+    thickness, finest = proportions(world, faces)
+    kept = defects.kept(shape.name, thickness, warnings)
+    if not kept.all():
+        faces, finest = faces[kept], finest[kept]
+    return MeshArrays(shape, world, np.ascontiguousarray(faces, np.uint32), normals, uv, finest, kind)
 
 
 def moving_mesh(shape: d.Shape, shutter: Shutter, warnings: list[str]) -> MeshArrays:

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from raylab import defects, keyframes, quadrics
 from raylab import description as d
-from raylab import keyframes, quadrics
 from raylab.clockwork import moving_rows, set_in_motion
 from raylab.embree import EmbreeScene
 from raylab.emitters import AreaLights, colour, point_table, sun_table
@@ -56,12 +56,16 @@ class Scene:
         still = keyframes.at_rest(description)
         self.shutter = (still.camera.shutter_open, still.camera.shutter_close)
         meshes, quads, left_out = gather(still.shapes, self.shutter)
-        self.warnings = [*description.warnings, *left_out]
         boxes = [(m.vertices.min(axis=0), m.vertices.max(axis=0)) for m in meshes if len(m.faces)]
+        round_boxes = []
         for q in quads:
             around = np.array([quadric_box(q)]) if q.shape.motion is None else moving_boxes(q, self.shutter)
-            boxes.append((around[:, 0].min(axis=0), around[:, 1].max(axis=0)))
-        self.placement = Placement.around(boxes)
+            round_boxes.append((around[:, 0].min(axis=0), around[:, 1].max(axis=0)))
+        defects.check_range(boxes + round_boxes)
+        self.placement = Placement.around(boxes + round_boxes)
+        others = [(q.shape.name, *box) for q, box in zip(quads, round_boxes, strict=True)]
+        fine = defects.of_size(self.placement.centre, self.placement.scale, meshes, others)
+        self.warnings = [*description.warnings, *left_out, *fine]
         self.motion_error = max((m.error for m in meshes), default=0.0)
         self.triangles = sum(len(m.faces) for m in meshes)
         builder = _Builder(self.placement, meshes, quads, self.shutter)

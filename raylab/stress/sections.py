@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import importlib
 
-MODULES = ("solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices")
+MODULES = (
+    "self_shadows",
+    "solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices",
+)  # fmt: skip
 
 
 def load() -> None:
