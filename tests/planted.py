@@ -1,57 +1,54 @@
 """Planted: mistakes in what students write, each with the causes that would be right to name.
 
-The right answers, in many manners, are those of tests/submissions; a row is an edit of one of them (`old` must occur in
+The right answers, in many manners, are those of tests/manners.py; a row is an edit of one of them (`old` must occur in
 the function or in its helpers). `python planted.py` (PYTHONPATH=..:.) diagnoses all of them in plain Python and writes
 docs/diagnosis.md.
 """
 
 from __future__ import annotations
 
-import re
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from functools import cache
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import manners
 import numpy as np
+from manners import Right
 
-from raylab.grading import assignment, diagnosis
-from raylab.grading.diagnosis import Diagnosis
+from raylab.grading import assignment
+from raylab.grading.diagnosis import diagnose
+from raylab.grading.evidence import Diagnosis
 from raylab.grading.source import Interpreted
 from raylab.grading.table import Table, path_of
 
 HERE = Path(__file__).parent
-FOR_MEANS = 1 << 9  # samples of each scene, in plain Python
+FOR_MOMENTS = 1 << 10  # samples of each scene, in plain Python
+TASKS = tuple(task.id for name in assignment.NAMES for task in assignment.load(name).tasks)
+RIGHT: dict[str, Right] = {right.style: right for task in TASKS for right in manners.of_task(task)}
 
 
 @dataclass(frozen=True)
 class Planted:
-    """A mistake: in which manner of writing, what is right to say of it, and the edits."""
+    """A mistake in a right answer, and what is right to say of it."""
 
-    task: str
-    style: str
+    right: Right
     causes: tuple[str, ...]
     edits: tuple[tuple[str, str], ...]
 
     @property
     def name(self) -> str:
-        return f"{self.style}: {self.edits[0][0]} -> {self.edits[0][1]}"
+        return f"{self.right.style}: {self.edits[0][0]} -> {self.edits[0][1]}".replace("\n", " ")
+
+    def function(self) -> Any:
+        return self.right.function(self.edits)
 
 
-STYLES = {
-    "a1.diffuse": ("area_diffuse.py", ("slide", "with_helpers", "early_ends", "by_hand", "by_index", "with_while", "other_numbers")),
-    "a2.area": ("others.py", ("area_slide", "area_keywords", "area_sum")),
-    "a3.uniform": ("others.py", ("uniform_slide", "uniform_own", "uniform_rejected")),
-    "a3.cosine": ("others.py", ("cosine_slide", "cosine_sphere")),
-    "a4.brdf": ("others.py", ("brdf_slide",)),
-    "a4.brightness": ("others.py", ("brightness_slide",)),
-    "a5.shade": ("others.py", ("phong_slide", "phong_own")),
-    "a7.shade": ("others.py", ("mis_slide", "mis_by_hand")),
-}  # fmt: skip
 # style, causes with | between, and pairs of old and new text
 ROWS: tuple[tuple[str, ...], ...] = (
     # --- a1: with helpers ---
@@ -234,40 +231,121 @@ ROWS: tuple[tuple[str, ...], ...] = (
     ("mis_by_hand", "weights missing", "(p_as_direction + brdf.pdf(V, L, N))", "p_as_direction"),
     ("mis_by_hand", "light samples only", "total = L * brdf.eval(V, w) * dot(w, N) / (p_w + p)", "total = black"),
     ("mis_by_hand", "measure of the weight", "p_as_direction = p_y * d2 / cos_y", "p_as_direction = p_y"),
+    # --- a3: samplers ---
+    ("a3.hemisphere_slide", "cosine for uniform", "math.sqrt(1.0 - u[0] * u[0])", "math.sqrt(1.0 - u[0])", "phi), u[0])", "phi), math.sqrt(u[0]))"),
+    ("a3.hemisphere_slide", "not of unit length", "math.sqrt(1.0 - u[0] * u[0])", "math.sqrt(u[0])"),
+    ("a3.hemisphere_slide", "half a turn", "2.0 * PI * u[1]", "PI * u[1]"),
+    ("a3.hemisphere_slide", "not turned to the axis", "from_frame(N, r * math.cos(phi), r * math.sin(phi), u[0])", "Vec3(r * math.cos(phi), r * math.sin(phi), u[0])"),
+    ("a3.hemisphere_turned", "sine for cosine", "s * (r * math.cos(phi)) + t * (r * math.sin(phi)) + N * z", "s * (z * math.cos(phi)) + t * (z * math.sin(phi)) + N * r"),
+    ("a3.hemisphere_turned", "not of unit length", "1.0 - z * z", "1.0 - z"),
+    ("a3.hemisphere_turned", "half a turn", "TWO_PI * u[0]", "PI * u[0]"),
+    ("a3.hemisphere_mirrored", "below the horizon", "cos_theta)\n", "-cos_theta)\n"),
+    ("a3.hemisphere_mirrored", "cosine for uniform", "cos_theta = 1.0 - u[0]", "cos_theta = math.sqrt(u[0])"),
+    ("a3.hemisphere_angles", "angle for height", "math.acos(1.0 - u[0])", "0.5 * PI * u[0]"),
+    ("a3.hemisphere_angles", "sine for cosine", "math.acos(1.0 - u[0])", "math.asin(1.0 - u[0])"),
+    ("a3.hemisphere_angles", "whole sphere", "math.acos(1.0 - u[0])", "math.acos(1.0 - 2.0 * u[0])"),
+    ("a3.hemisphere_own_frame", "one random number for two", "math.cos(TWO_PI * u[1])", "math.cos(TWO_PI * u[0])", "math.sin(TWO_PI * u[1])", "math.sin(TWO_PI * u[0])"),
+    ("a3.hemisphere_own_frame", "not of unit length", "normalize(cross(a, n))", "cross(a, n)"),
+    ("a3.hemisphere_sphere", "whole sphere", "    if dot(w, N) < 0.0:\n        w = -w\n", ""),
+    ("a3.hemisphere_sphere", "below the horizon", "dot(w, N) < 0.0", "dot(w, N) > 0.0"),
+    ("a3.hemisphere_by_hand", "not random", "z, phi = u[0]", "z, phi = 0.5"),
+    ("a3.hemisphere_reflected", "cosine for uniform", "u[0] * (2.0 - u[0])", "u[0]", "1.0 - u[0])", "math.sqrt(1.0 - u[0]))"),
+    ("a3.cos_hemisphere_slide", "no square root", "r, phi = math.sqrt(u[0])", "r, phi = u[0]", "math.sqrt(1.0 - u[0])", "math.sqrt(1.0 - u[0] * u[0])"),
+    ("a3.cos_hemisphere_slide", "uniform for cosine", "r, phi = math.sqrt(u[0])", "r, phi = math.sqrt(1.0 - u[0] * u[0])", "math.sqrt(1.0 - u[0]))", "u[0])"),
+    ("a3.cos_hemisphere_slide", "not of unit length", "math.sqrt(1.0 - u[0])", "1.0 - u[0]"),
+    ("a3.cos_hemisphere_turned", "not of unit length", "r, phi = math.sqrt(u[1])", "r, phi = u[1]"),
+    ("a3.cos_hemisphere_turned", "half a turn", "TWO_PI * u[0]", "u[0]"),
+    ("a3.cos_hemisphere_angles", "angle for height", "math.asin(math.sqrt(u[0]))", "0.5 * PI * u[0]"),
+    ("a3.cos_hemisphere_angles", "uniform for cosine", "math.asin(math.sqrt(u[0]))", "math.acos(u[0])"),
+    ("a3.cos_hemisphere_angles", "not turned to the axis", "from_frame(N, ", "Vec3("),
+    ("a3.cos_hemisphere_own_frame", "no square root", "r = math.sqrt(u[0])", "r = u[0]"),
+    ("a3.cos_hemisphere_own_frame", "axes exchanged", "return x * s + y * t + z * n", "return z * s + x * t + y * n"),
+    ("a3.cos_hemisphere_sphere", "not of unit length", "return normalize(w)", "return w"),
+    ("a3.cos_hemisphere_sphere", "whole sphere", "w = N + on_sphere(u)", "w = on_sphere(u)"),
+    ("a3.cos_hemisphere_disk", "square for disk", "    x, y = disk(u)\n", "    x, y = 2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0\n"),
+    ("a3.cos_hemisphere_by_hand", "one random number for two", "phi = TWO_PI * u[1]", "phi = TWO_PI * u[0]"),
+    ("a3.cos_hemisphere_mirrored", "another power of the cosine", "math.sqrt(u[0])", "u[0] ** (1.0 / 3.0)", "math.sqrt(1.0 - u[0])", "math.sqrt(1.0 - u[0] ** (2.0 / 3.0))"),
+    # --- a3: shades with wrong samplers in them ---
+    ("a3.uniform_turned", "half a turn", "TWO_PI * u[0]", "PI * u[0]"),
+    ("a3.uniform_angles", "angle for height", "math.acos(1.0 - u[0])", "0.5 * PI * u[0]"),
+    ("a3.uniform_slide", "cosine for uniform", "math.sqrt(1.0 - u[0] * u[0])", "math.sqrt(1.0 - u[0])", "phi), u[0])", "phi), math.sqrt(u[0]))"),
+    ("a3.uniform_sphere", "whole sphere", "    if dot(w, N) < 0.0:\n        w = -w\n", ""),
+    ("a3.cosine_turned", "uniform for cosine", "r, phi = math.sqrt(u[1])", "r, phi = math.sqrt(1.0 - u[1] * u[1])", "math.sqrt(1.0 - u[1])", "u[1]"),
+    ("a3.cosine_slide", "no square root", "r, phi = math.sqrt(u[0])", "r, phi = u[0]", "math.sqrt(1.0 - u[0])", "math.sqrt(1.0 - u[0] * u[0])"),
+    ("a3.cosine_mirrored", "below the horizon|black", "cos_theta)\n", "-cos_theta)\n"),
+    ("a3.cosine_angles", "not turned to the axis", "from_frame(N, ", "Vec3("),
+    # --- a5: lobe and density ---
+    ("a5.lobe_slide", "exponent off by one", "1.0 / (n + 1.0)", "1.0 / n"),
+    ("a5.lobe_slide", "power for root", "1.0 / (n + 1.0)", "n + 1.0"),
+    ("a5.lobe_turned", "exponent off by one", "1.0 / (1.0 + n)", "1.0 / (2.0 + n)"),
+    ("a5.lobe_turned", "not of unit length", "math.sqrt(max(0.0, 1.0 - z * z))", "1.0 - z"),
+    ("a5.lobe_mirrored", "exponent missing", "u[0] ** (1 / (n + 1))", "u[0]"),
+    ("a5.lobe_f_over_p", "sine for cosine", "math.acos((1.0 - u[0])", "math.asin((1.0 - u[0])"),
+    ("a5.lobe_logarithms", "exponent off by one", "(n + 1.0)", "n"),
+    ("a5.lobe_own_frame", "half a turn", "TWO_PI * u[1]", "PI * u[1]"),
+    ("a5.lobe_numpy", "not turned to the axis", "s, t = frame(R)", "s, t, R = Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)"),
+    ("a5.pdf_slide", "lobe behind R", "max(0.0, dot(R, w)) ** n", "dot(R, w) ** n"),
+    ("a5.pdf_slide", "normalisation missing", "(n + 1.0) / (2.0 * PI) * ", ""),
+    ("a5.pdf_mirrored", "factor", "/ (2 * math.pi)", "/ math.pi"),
+    ("a5.pdf_turned", "exponent off by one", "(n + 1.0) / TWO_PI", "(n + 2.0) / TWO_PI"),
+    ("a5.pdf_turned", "lobe behind R", "c = dot(R, w)", "c = abs(dot(R, w))"),
+    ("a5.pdf_f_over_p", "exponent off by one", "norm = (n + 1)", "norm = n"),
+    ("a5.pdf_helpers", "factor", "(n + m) / TWO_PI", "(n + m)"),
+    ("a5.pdf_numpy", "normalisation missing|factor", "(n + 1) / (2 * np.pi)", "1.0 / (2 * np.pi)"),
+    ("a5.pdf_own_frame", "exponent missing", "c**n * (n + 1)", "(n + 1)"),
+    ("a5.shade_slide", "exponent off by one", "1.0 / (n + 1.0)", "1.0 / n"),
+    # --- a6 ---
+    ("a6.aperture_slide", "no square root", "a * math.sqrt(u[0])", "a * u[0]"),
+    ("a6.aperture_turned", "no square root", "math.sqrt(u[1])", "u[1]"),
+    ("a6.aperture_turned", "radius missing", "a * r * math.sin(phi), a * r * math.cos(phi)", "r * math.sin(phi), r * math.cos(phi)"),
+    ("a6.aperture_by_hand", "half a turn", "u[1] * 2 * math.pi", "u[1] * math.pi"),
+    ("a6.aperture_squares", "square for disk", "return a * r * math.cos(phi), a * r * math.sin(phi)", "return a * x, a * y"),
+    ("a6.aperture_mirrored", "on the rim", "a * math.sqrt(1.0 - u[0])", "a"),
+    ("a6.aperture_helpers", "radius power", "x * a, y * a", "x * a * a, y * a * a"),
+    ("a6.aperture_degrees", "factor", "math.sqrt(u[0]) * a", "math.sqrt(u[0]) * a / 2"),
+    ("a6.lens_slide", "focus sphere", "toward * f", "normalize(toward) * f"),
+    ("a6.lens_slide", "z is not 1", "(focus - Vec3(px, py, 0.0)) / f", "focus - Vec3(px, py, 0.0)"),
+    ("a6.lens_turned", "lens point added", "f * toward - Vec3", "f * toward + Vec3"),
+    ("a6.lens_turned", "focus sphere", "f * toward", "f * normalize(toward)"),
+    ("a6.lens_by_hand", "not divided by f", "px / f", "px", "py / f", "py"),
+    ("a6.lens_by_hand", "lens point ignored", " - px / f", "", " - py / f", ""),
+    ("a6.lens_helpers", "axes exchanged", "(q.x - px) / q.z, (q.y - py)", "(q.x - py) / q.z, (q.y - px)"),
+    ("a6.lens_mirrored", "backwards", "return -to_lens / f", "return to_lens"),
+    ("a6.lens_early_ends", "z is not 1", " * (length(toward * f - Vec3(px, py, 0.0)) / f)", ""),
+    ("a6.time_slide", "opening missing", "open + (close", "(close"),
+    ("a6.time_turned", "reversed", "(1.0 - u) * open + u * close", "u * open + (1.0 - u) * close"),
+    ("a6.time_by_hand", "shutter not scaled", "t += u * length", "t += u"),
+    ("a6.time_quarters", "not random", "(2.0 * u - 1.0) * half", "0.0"),
+    ("a6.time_degrees", "interval for end", "dt = close - open", "dt = close"),
+    ("a6.motion_slide", "not clamped", "    s = min(1.0, max(0.0, s))\n", ""),
+    ("a6.motion_slide", "velocity for position", "p0 + (p1 - p0) * s", "p0 + p1 * s"),
+    ("a6.motion_turned", "reversed", "p0 * (t1 - t) + p1 * (t - t0)", "p1 * (t1 - t) + p0 * (t - t0)"),
+    ("a6.motion_by_hand", "not clamped", "    elif s > 1:\n        s = 1.0\n", ""),
+    ("a6.motion_by_hand", "beginning missing", "(t - t0) / (t1 - t0)", "t / (t1 - t0)"),
+    ("a6.motion_squares", "time not scaled", "(t - t0) / (t1 - t0)", "t - t0"),
+    ("a6.motion_helpers", "jumps", "between(p0, p1, clamped((t - t0) / (t1 - t0)))", "p0 if t < t1 else p1"),
+    ("a6.motion_quarters", "time not scaled", "(p1 - p0) / (t1 - t0)", "p1 - p0"),
+    # --- a7: weights ---
+    ("a7.balance_slide", "weights exchanged", "p / (p + q)", "q / (p + q)"),
+    ("a7.balance_slide", "sum missing", "p / (p + q)", "p / q"),
+    ("a7.balance_sum", "other heuristic", "return p / total", "return p * p / (p * p + q * q)"),
+    ("a7.balance_ratio", "weights exchanged", "q / p", "p / q"),
+    ("a7.balance_index", "weights of one half", "return weights[0] / (weights[0] + weights[1])", "return 0.5"),
+    ("a7.balance_numpy", "squares", "both[0] / np.sum(both)", "both[0] ** 2 / np.sum(both)"),
+    ("a7.power_slide", "other heuristic", "r * r", "r"),
+    ("a7.power_sum", "overflow", "p / largest, q / largest", "p, q"),
+    ("a7.power_ratio", "weights exchanged", "q / p", "p / q"),
+    ("a7.power_index", "squares", "return a * a / (a * a + b * b)", "return a * a"),
+    ("a7.power_numpy", "other heuristic", "both[0] ** 2 / np.sum(both * both)", "both[0] / np.sum(both)"),
+    ("a7.power_early_ends", "weights exchanged", "return b * b", "return c * c"),
 )  # fmt: skip
-TASK_OF = {style: (task, file) for task, (file, styles) in STYLES.items() for style in styles}
 
 
 def corpus() -> list[Planted]:
     return [
-        Planted(TASK_OF[style][0], style, tuple(causes.split("|")), tuple(zip(rest[::2], rest[1::2], strict=True)))
+        Planted(RIGHT[style], tuple(causes.split("|")), tuple(zip(rest[::2], rest[1::2], strict=True)))
         for style, causes, *rest in ROWS
     ]
-
-
-@cache
-def text_of(file: str) -> str:
-    return re.sub(r"(?m)^(import matplotlib|@).*\n", "", (HERE / "submissions" / file).read_text())
-
-
-def parts(text: str, style: str) -> Iterator[tuple[int, int]]:
-    """Where the function and its helpers stand: from its own `def` to the next comment or rule at the margin."""
-    start = text.index(f"def {style}(")
-    end = re.compile(r"^#|^def (?!one|geometry|clamped|visible|gather|sample_light)", re.M).search(text, start + 4)
-    yield start, end.start() if end else len(text)
-
-
-def function(task: str, style: str, edits: tuple[tuple[str, str], ...] = ()) -> Any:
-    """The function, with its mistake; LookupError when an edit does not fit."""
-    text = text_of(TASK_OF[style][1])
-    for old, new in edits:
-        (start, end), *_ = parts(text, style)
-        if old not in text[start:end]:
-            raise LookupError(f"{style}: {old!r} does not occur")
-        text = text[:start] + text[start:end].replace(old, new) + text[end:]
-    space: dict[str, Any] = {"__name__": "submission"}
-    exec(compile(text, f"<{task}>", "exec"), space)
-    return space[style]
 
 
 @cache
@@ -275,39 +353,34 @@ def table(task: str) -> Table:
     return Table.read(path_of(assignment.load(task.partition(".")[0]).folder, task))
 
 
-def diagnosed(task: str, found: Any, n: int = FOR_MEANS) -> list[Diagnosis]:
+def diagnosed(right: Right, function: Any, n: int = FOR_MOMENTS) -> list[Diagnosis]:
     """What is said of a function, all of it in plain Python."""
-    before, diagnosis.FOR_MEANS = diagnosis.FOR_MEANS, n
-    try:
-        with np.errstate(all="ignore"):
-            return diagnosis.diagnose(table(task), Interpreted({task: found}), task)
-    finally:
-        diagnosis.FOR_MEANS = before
+    with np.errstate(all="ignore"), redirect_stdout(StringIO()):  # some print on the way
+        source = Interpreted({right.task: function}, {right.task: right.asked})
+        return diagnose(table(right.task), source, right.task, n=n)
 
 
 def main(out: Path) -> None:
     start, rows, first, among = time.time(), [], Counter(), Counter()
     for planted in corpus():
-        named = [d.cause for d in diagnosed(planted.task, function(planted.task, planted.style, planted.edits))]
+        named = [d.cause for d in diagnosed(planted.right, planted.function())]
         right = [cause in planted.causes for cause in named]
-        first[planted.task] += bool(right[:1] == [True])
-        among[planted.task] += any(right)
+        first[planted.right.task] += right[:1] == [True]
+        among[planted.right.task] += any(right)
         if right[:1] != [True]:
             rows.append(
-                f"| {planted.task} | `{planted.name}` | {planted.causes[0]} | {', '.join(named) or 'nothing'} |".replace(
-                    "\n", " "
-                )
+                f"| {planted.right.task} | `{planted.name}` | {planted.causes[0]} | {', '.join(named) or 'nothing'} |"
             )
             print(rows[-1], flush=True)
-    accused = [s for task, (_, styles) in STYLES.items() for s in styles if diagnosed(task, function(task, s))]
-    total, count = Counter(p.task for p in corpus()), len(corpus())
+    accused = [style for style, right in RIGHT.items() if diagnosed(right, right.function())]
+    total, count = Counter(p.right.task for p in corpus()), len(corpus())
     lines = [
         "# Naming the mistake", "",
         "`cd tests && PYTHONPATH=.. python planted.py` plants mistakes in right answers that are written in many manners",
         "(tests/planted.py), compares them in plain Python with the tables of variants, and writes this page.", "",
-        f"- {count} planted mistakes: the right cause is named first in {sum(first.values())} "
-        f"({100 * sum(first.values()) / count:.1f} %), among three in {sum(among.values())} ({100 * sum(among.values()) / count:.1f} %).",
-        f"- {sum(len(s) for _, s in STYLES.values())} right answers: {len(accused)} accused.", "",
+        f"- {count} planted mistakes: the right cause is named first in {first.total()} "
+        f"({100 * first.total() / count:.1f} %), among three in {among.total()} ({100 * among.total() / count:.1f} %).",
+        f"- {len(RIGHT)} right answers: {len(accused)} accused.", "",
         "| task | planted | named first | among three |", "|---|---|---|---|",
         *(f"| {t} | {n} | {first[t]} | {among[t]} |" for t, n in sorted(total.items())), "",
         "Where the right cause is not named first:", "", "| task | planted | cause | named |", "|---|---|---|---|", *rows, "",

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ast
+import itertools
 
-import numpy as np
 import pytest
 
 from raylab.errors import UserError
@@ -12,10 +12,12 @@ from raylab.grading import report
 from raylab.grading.assignment import NAMES, load, root
 from raylab.grading.begin import begin, stub_of
 from raylab.grading.causes import CAUSES
+from raylab.grading.paired import agree
 from raylab.grading.source import Interpreted
 from raylab.grading.stub import function_stub, leaks, solutions, telling
-from raylab.grading.table import SEED, TRIAL_SEED, Table, path_of
-from raylab.grading.variants import VARIANTS, alive, edited, fingerprint
+from raylab.grading.table import Table, path_of
+from raylab.grading.variant import alive, edited
+from raylab.grading.variants import VARIANTS, fingerprint
 from raylab.submission.ladder import climb
 
 PRESENT = [name for name in NAMES if (root() / name / "assignment.toml").is_file()]
@@ -78,7 +80,7 @@ def test_the_handout_shows_the_rubric(name):
 @pytest.mark.parametrize("task", sorted(VARIANTS))
 def test_variants_fit_the_solution_and_have_causes(task):
     for variant in VARIANTS[task]:
-        assert edited(SOLVED[task].text, variant.edits) != SOLVED[task].text
+        assert edited(SOLVED[task].text, variant) != SOLVED[task].text
         assert variant.cause in CAUSES
         assert all(CAUSES[variant.cause].hints)
 
@@ -86,18 +88,23 @@ def test_variants_fit_the_solution_and_have_causes(task):
 @pytest.mark.parametrize("task", sorted(VARIANTS))
 def test_the_table_of_variants_is_up_to_date(task):
     """Made by `python -m raylab.grading.table TASK`; its first row is the reference, and no other row is."""
-    table = Table.read(path_of(load(task.partition(".")[0]).folder, task))
+    assignment = load(task.partition(".")[0])
+    table = Table.read(path_of(assignment.folder, task))
     assert table.fingerprint == fingerprint(SOLVED[task])
     assert table.causes[0] == "none"
-    with np.errstate(all="ignore"):
-        size = np.abs(table.samples[0]).mean(axis=1, keepdims=True)
-        again = Interpreted({task: alive(SOLVED[task], SOLVED[task].text)})
-        for i, trial in enumerate(table.trials):
-            here = again.samples(task, trial, TRIAL_SEED, SEED, 0, 3)
-            np.testing.assert_allclose(here, table.samples[0, i, :3], rtol=1e-5, atol=1e-9)
-        for cause, samples in zip(table.causes[1:], table.samples[1:], strict=True):
-            off = np.nanmax(np.abs(samples - table.samples[0]) / size)
-            assert off > 1e-3 or np.isnan(samples).any(), cause
+    again = Interpreted({task: alive(SOLVED[task], SOLVED[task].text)}, {task: assignment.task(task)})
+    assert agree(table.paired(again, task, 3), table.samples[0, :, :3])
+    for cause, samples in zip(table.causes[1:], table.samples[1:], strict=True):
+        assert not agree(samples, table.samples[0]), cause
+
+
+@pytest.mark.parametrize("task", sorted(VARIANTS))
+def test_no_two_causes_have_the_same_numbers(task):
+    """Else neither could be named."""
+    table = Table.read(path_of(load(task.partition(".")[0]).folder, task))
+    rows = list(zip(table.causes, table.samples, strict=True))
+    alike = {(a, b) for (a, x), (b, y) in itertools.combinations(rows, 2) if a != b and agree(x, y)}
+    assert not alike
 
 
 def test_bad_names_and_folders_are_refused(tmp_path):

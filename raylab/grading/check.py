@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from raylab.errors import UserError
 from raylab.grading import report
 from raylab.grading.assignment import Assignment, Property
-from raylab.grading.diagnosis import Diagnosis, by_samples, ranked
+from raylab.grading.diagnosis import diagnose
+from raylab.grading.evidence import Diagnosis, ranked
 from raylab.grading.intake import collect
 from raylab.grading.judge import Judge
 from raylab.grading.judged import Judged, refused
+from raylab.grading.paired import by_samples
 from raylab.grading.raised import Raised, Watched
-from raylab.grading.source import Interpreted
-from raylab.grading.table import PAIRED, SEED, TRIAL_SEED, Table, path_of
+from raylab.grading.source import Interpreted, Source
+from raylab.grading.table import Table, path_of
 from raylab.submission.finding import Finding
 from raylab.submission.ladder import Climb, climb
 from raylab.submission.shape import ENTRY, check_shape
@@ -46,15 +49,20 @@ def table_of(assignment: Assignment, task: str) -> Table | None:
 
 def at_once(assignment: Assignment, source: bytes, task: Task) -> tuple[list[Diagnosis], str]:
     """What the first samples say in plain Python, and a token for the first one that is not the reference's."""
-    import numpy as np
-
     table = table_of(assignment, task.id)
-    if table is None or task.kind != "shade":
+    if table is None:
         return [], ""
-    drawn = Interpreted({task.id: in_python(source, task)})
-    values = np.stack([drawn.samples(task.id, t, TRIAL_SEED, SEED, 0, PAIRED) for t in table.trials])
+    values = table.paired(Interpreted({task.id: in_python(source, task)}, {task.id: task}), task.id)
     found = ranked(by_samples(table, values))
-    return found, first_different(table, values, task.id) if found else ""
+    return found, first_different(table, values, task.id) if found and task.kind == "shade" else ""
+
+
+def by_distribution(assignment: Assignment, source: Source, task: str) -> list[Diagnosis]:
+    """What may be wrong with a task that has failed, however it uses its random numbers."""
+    table = table_of(assignment, task)
+    with suppress(Raised):
+        return diagnose(table, source, task) if table else []
+    return []
 
 
 def first_different(table: Table, values: Any, task: str) -> str:
@@ -99,9 +107,11 @@ def check(assignment: Assignment, path: Path, say: Say, hint: int = 1, entropy: 
         say(str(finding))
     stopped = {f.task for f in early.findings if f.fatal}
     running = [task for task in tasks if task.id not in stopped and "" not in stopped]
+    named: dict[str, list[str]] = {}
     for task in running:
         found, token = at_once(assignment, source, task)
-        for sentence in report.causes(found, hint):
+        named[task.id] = report.causes(found, hint)
+        for sentence in named[task.id]:
             say(f"{task.id}: {sentence}")
         if token:
             say(f"    A sample to look at: raylab replay {token} {path}")
@@ -109,7 +119,8 @@ def check(assignment: Assignment, path: Path, say: Say, hint: int = 1, entropy: 
         say(f"{', '.join(t.id for t in running)}: runs in plain Python; now it is compiled and judged ...")
     climbed = climb(source, running, tell=lambda f: say(str(f)) if f.stage in ("compile", "cross-check") else None)
     climbed.findings[:0] = early.findings
-    judge = Judge(assignment, Watched(climbed.functions, source, tasks), entropy)
+    watched = Watched(climbed.functions, source, tasks)
+    judge = Judge(assignment, watched, entropy)
     judged, raised = [], set[str]()
     for own in assignment.properties:
         try:
@@ -119,6 +130,9 @@ def check(assignment: Assignment, path: Path, say: Say, hint: int = 1, entropy: 
             if (text := str(error.finding)) not in raised:
                 raised.add(text)
                 say(f"{text}\n    {sample_of(error, assignment, path)}")
+    for name in dict.fromkeys(j.task for j in judged if j.outcome == "FAIL" and not named[j.task]):
+        for sentence in report.causes(by_distribution(assignment, watched, name), hint):
+            say(f"{name}: {sentence}")
     say("")
     say(report.verdicts(judged))
     score, points = report.total(judged)

@@ -22,8 +22,9 @@ from raylab.grading.stub import Solution, functions, leaks, solutions, squeezed,
 
 SOURCE = Path(raylab.__file__).parents[1]
 STAFF = (
-    "grading/variants.py", "grading/stub.py", "grading/course_wheel.py", "grading/course.py", "grading/dashboard.py",
-    "grading/one.py", "commands_staff.py",
+    "grading/variant.py", "grading/variants.py", "grading/lamp_variants.py", "grading/sky_variants.py",
+    "grading/map_variants.py", "grading/stub.py", "grading/course_wheel.py", "grading/course.py",
+    "grading/dashboard.py", "grading/one.py", "commands_staff.py",
 )  # fmt: skip
 BUILD = """
 [build-system]

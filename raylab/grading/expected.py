@@ -6,13 +6,15 @@ Each entry makes rows of inputs (n, k) and the results (n, m); a result may be o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import numpy.typing as npt
 
+from raylab.grading.assignment import Property
 from raylab.stats import domains
 from raylab.stats.domains import Domain
+from raylab.submission.task import Task
 
 Array = npt.NDArray[np.float64]
 Pair = tuple[Array, Array]
@@ -132,3 +134,28 @@ def density(name: str, domain: str, rng: np.random.Generator) -> tuple[Domain, C
         return np.asarray(np.maximum(0.0, w @ axis) / math.pi if cosine else np.full(len(w), 0.5 / math.pi))
 
     return domains.hemisphere(tuple(axis)), over, axis
+
+
+# --- inputs on which mistakes are told from one another ---
+
+
+def blocks(properties: Iterable[Property], n: int, seed: int) -> dict[str, Array]:
+    """Rows of inputs (n, k) by name, from what a plain function is asked for: four positions of each domain."""
+    found = {}
+    for own in properties:
+        rng = np.random.default_rng(seed)
+        if own.claim == "values":
+            rows, _ = VALUES[own.options["expected"]](rng)
+            found[own.options["expected"]] = rows[:: ROWS // n][:n]
+        elif own.claim == "density":
+            for i in range(4):
+                _, _, before = density(own.options["density"], own.options["domain"], rng)
+                found[f"{own.options['domain']} {i}"] = np.column_stack([np.tile(before, (n, 1)), rng.random((n, 2))])
+    return found
+
+
+def random_columns(properties: Iterable[Property], task: Task) -> npt.NDArray[np.int_]:
+    """Which columns of a row are the pair u of a sampler; none for other functions."""
+    if not any(own.claim == "density" for own in properties):
+        return np.zeros(0, int)
+    return np.arange(task.columns[0])[-2:]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from raylab.grading.assignment import Assignment
-from raylab.grading.diagnosis import Diagnosis
+from raylab.grading.evidence import Diagnosis
 from raylab.grading.judged import Judged
 
 ORDER = {"ERROR": 0, "FAIL": 0, "NOT ATTEMPTED": 1, "NOT GRADED": 1, "INCONCLUSIVE": 2, "PASS": 3}

@@ -7,15 +7,20 @@ map(task, rows (n, k)) -> (n, m)                               of a plain functi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from raylab import trials
+from raylab.jit import interpreted
 from raylab.plain import Plain
 from raylab.probe import Draws, Place, Probe
+from raylab.submission.interpret import flatten, unpack
+from raylab.submission.task import Task
 from raylab.trials import Trial
 
 Array = npt.NDArray[np.float64]
@@ -65,21 +70,30 @@ class InProcess:
 
 
 class Interpreted(InProcess):
-    """The same in plain Python: nothing to compile, for few samples of many functions."""
+    """The same in plain Python: nothing to compile, for few samples of many functions; what raises is not a number."""
+
+    def __init__(self, functions: Mapping[str, Any], tasks: Mapping[str, Task] | None = None) -> None:
+        super().__init__(functions)
+        self.tasks = tasks or {}
 
     def samples(self, task: str, trial: str, trial_seed: int, seed: int, first: int, n: int) -> Array:
-        made = self.trial(trial, trial_seed)
-        called = plain_of(made, seed)
-        values = np.empty((n, 3))
-        for i in range(n):
-            try:
-                values[i] = tuple(called.call(self.functions[task], first + i))
-            except Exception:  # whatever a student's function does
-                values[i] = np.nan
-        return values
+        called, function = plain_of(self.trial(trial, trial_seed), seed), self.functions[task]
+        return numbers([partial(called.call, function, first + i) for i in range(n)], tuple, 3)
 
     def map(self, task: str, rows: npt.ArrayLike) -> Array:
-        raise NotImplementedError
+        function, asked = self.functions[task], self.tasks[task]
+        with interpreted():
+            calls = [partial(function, *unpack(asked.takes, row)) for row in np.asarray(rows, np.float64)]
+            return numbers(calls, lambda found: flatten(asked, found, 0), asked.columns[1])
+
+
+def numbers(calls: Sequence[Callable[[], Any]], flat: Callable[[Any], Sequence[float]], width: int) -> Array:
+    """What each call returns, made `flat`: (calls, width)."""
+    values = np.full((len(calls), width), np.nan)
+    for i, call in enumerate(calls):
+        with suppress(Exception):  # whatever a student's function does
+            values[i] = flat(call())
+    return values
 
 
 class Asked:
