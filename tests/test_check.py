@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -104,3 +106,10 @@ def test_the_first_sample_that_raises_is_found(bad):
             raise ValueError
 
     assert first_that_raises(ask, 100, 10) == 100 + bad
+
+
+def test_what_takes_long_to_import_is_not_there_before_the_first_words():
+    heavy = "scipy.special", "scipy.stats", "matplotlib", "colour", "OpenImageIO", "trimesh", "skimage", "pytest"
+    text = f"import sys, raylab.cli, raylab.grading.check; print([n for n in {heavy} if n in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

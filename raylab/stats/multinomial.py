@@ -10,7 +10,6 @@ Ville 1939 (the bound).
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import gammaln, logsumexp
 
 from raylab.stats.histogram import Array
 
@@ -35,6 +34,8 @@ class Counts:
 
     def log_evidence(self) -> float:
         """log E: `exp` of it exceeds 1 / alpha ever with probability at most alpha if p is true."""
+        from scipy.special import gammaln, logsumexp
+
         if (self.n[self.p == 0.0] > 0).any():
             return np.inf
         used = self.n > 0
