@@ -289,7 +289,9 @@ def cos_power(R, n, w):
 
 @njit
 def log_cos(R, w):
-    """log(R . w) for R . w > 0. Near 0, where n = 1e7 magnifies each digit, from the sine: log1p(-sin^2) / 2."""
-    sine = cross(R, w)
+    """log(R . w) for R . w > 0. Near 0, where n = 1e7 magnifies each digit, from the sine: log1p(-sin^2) / 2.
+
+    R x (w - R) = R x w, and does not cancel."""
+    sine = cross(R, w - R)
     sin_sqr = dot(sine, sine)
     return 0.5 * math.log1p(-sin_sqr) if sin_sqr < 0.5 else math.log(dot(R, w))

@@ -77,7 +77,7 @@ SCALES = (2.0**-538, 2.0**515)  # 1e-162 and 1e155
 @case(
     "B14", "floor and lamp in a scene of size 1e-162 and 1e155", usual="d / |d| and 1 / |d|^2 of the world's lengths",
     rule="the scene is scaled to [-1, 1] by a power of two first", truth="the same scene at size 1, bit by bit",
-    unit="samples of 20,000 that differ", allowed=0.0,
+    unit="samples of 20,000 that differ", allowed=0.0, limit=60.0,
 )  # fmt: skip
 def of_any_size() -> Found:
     light = placed(0.25, 0.5, 1.0, 0.5, 0.5, -1.0)
@@ -148,7 +148,7 @@ def turned(offset: float) -> Array:
     "B17", "a lamp in the plane of the floor, at the origin and 1e6 away, level and rotated, and a point of the lamp",
     usual="|cos| |cos| / r^2, as on the slide \"Area source by Monte Carlo\"",
     rule="in shadow within the rounding of float32 of either plane", truth="no light",
-    unit="samples of 120,000 that are not 0", allowed=0.0,
+    unit="samples of 120,000 that are not 0", allowed=0.0, limit=60.0,
 )  # fmt: skip
 def in_the_same_plane() -> Found:
     wrong = usual = 0

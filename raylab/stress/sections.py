@@ -6,8 +6,17 @@ import importlib
 
 MODULES = (
     "self_shadows",
-    "solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices",
-)  # fmt: skip
+    "solid_angles",
+    "cones",
+    "rectangles",
+    "nearness",
+    "stiff_lights",
+    "choices",
+    "lobes",
+    "reflection",
+    "boundaries",
+    "frames",
+)
 
 
 def load() -> None:

@@ -56,7 +56,7 @@ def distance(s: Any, size: float) -> float:
     "B10", "2e5 points of a rectangle of size 1e-1, 1e-5 and 1e-7 at distance 1", usual="Urena's map at every size",
     rule="uniform in area below 2^-10 of the distance, two triangles below 2^-18 sr, Urena's map above",
     truth="uniform in solid angle: share of the angle on either side of a point, 60 digits",
-    unit="sqrt(n) times Kolmogorov's distance", allowed=SAME,
+    unit="sqrt(n) times Kolmogorov's distance", allowed=SAME, limit=60.0,
 )  # fmt: skip
 def uniform_in_angle() -> Found:
     u = squares(2 * SAMPLES)
@@ -138,7 +138,7 @@ def touching(epsilon: float) -> tuple[float, float]:
     "B20", "a wall light that touches the floor, from 2^-3, 2^-7 and 2^-10 of its foot",
     usual="points uniform in area: relative variance pi / (12 eps^2), infinite over a pixel with the foot in it",
     rule="uniform in solid angle; the mean of points by area is called not trusted", truth="closed form, quadrature",
-    unit="exact standard errors of raylab's mean of 1e5 (NaN if not told)", allowed=4.5,
+    unit="exact standard errors of raylab's mean of 1e5 (NaN if not told)", allowed=4.5, limit=60.0,
 )  # fmt: skip
 def touching_the_floor() -> Found:
     wall = np.array([[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 1], [0, 0, 0, 1]], float)
