@@ -16,6 +16,7 @@ MODULES = (
     "reflection",
     "boundaries",
     "frames",
+    "skies",
 )
 
 
