@@ -5,19 +5,10 @@ from __future__ import annotations
 import importlib
 
 MODULES = (
-    "self_shadows",
-    "solid_angles",
-    "cones",
-    "rectangles",
-    "nearness",
-    "stiff_lights",
-    "choices",
-    "lobes",
-    "reflection",
-    "boundaries",
-    "frames",
-    "skies",
-)
+MODULES = (
+    "self_shadows", "shadow_rays",
+    "solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices", "lobes", "reflection", "boundaries", "frames", "skies",
+)  # fmt: skip
 
 
 def load() -> None:

@@ -57,6 +57,10 @@ class UsualTracer:
 
     def seen(self, faces: Array, places: Array, height: float) -> tuple[Array, Array]:
         """Points o + t d, in float32, at the barycentric places of triangles, seen from `height` above; normals."""
+        with np.errstate(all="ignore"):
+            return self._seen(faces, places, height)
+
+    def _seen(self, faces: Array, places: Array, height: float) -> tuple[Array, Array]:
         v0, v1, v2 = (self.vertices[self.faces[faces, k]] for k in range(3))
         b = places.astype(np.float32)
         target = v0 + (v1 - v0) * b[:, :1] + (v2 - v0) * b[:, 1:]
@@ -75,8 +79,10 @@ class UsualTracer:
     def blocked(self, origins: Array, targets: Array) -> Array:
         """(n,) whether something stands between points, by a unit direction and the distance less 1e-4."""
         d = targets - origins
-        distance = np.linalg.norm(d, axis=1, keepdims=True)
-        return self.hits(origins, d / distance, tfar=(distance - np.float32(EPSILON))[:, 0]) >= 0
+        with np.errstate(all="ignore"):
+            distance = np.linalg.norm(d, axis=1, keepdims=True)
+            unit = d / distance
+        return self.hits(origins, unit, tfar=(distance - np.float32(EPSILON))[:, 0]) >= 0
 
 
 def rows_dot(a: Array, b: Array) -> Array:
