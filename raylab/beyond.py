@@ -15,7 +15,7 @@ from raylab.lights import to_area
 from raylab.mis import balance, power
 from raylab.point import dist_sqr
 from raylab.shadow import shadow, shadow_toward
-from raylab.surface import LIGHT, SHADOW_RAYS, intersect, round32
+from raylab.surface import LIGHT, SHADOW_RAYS, direction32, intersect, round32
 from raylab.vec3 import black, dot, normalize
 
 
@@ -73,7 +73,7 @@ def seen_toward(scene, x, N, w):
     """The radiance that comes to x from the direction w, the number of its light (-1: none, or the sky), and the
     density, 1/sr, with which that light's own sample would have come from there."""
     scene.tally[SHADOW_RAYS] += 1
-    hit = intersect(scene, round32(x.p + x.n * x.slack), round32(w), TNEAR, math.inf)
+    hit = intersect(scene, round32(x.p + x.n * x.slack), direction32(w), TNEAR, math.inf)
     if not hit.found:
         return scene.environment.eval(w), -1, scene.environment.pdf(N, w)
     light = scene.shapes[hit.shape, LIGHT]

@@ -20,7 +20,7 @@ from raylab.lights import to_area
 from raylab.mis import balance
 from raylab.shade import area, directional_light, env_brdf, point_light
 from raylab.shadow import shadow, shadow_toward
-from raylab.surface import SHADOW_RAYS, intersect, round32
+from raylab.surface import SHADOW_RAYS, direction32, intersect, round32
 from raylab.vec3 import black, dot, luminance, normalize
 
 
@@ -103,7 +103,7 @@ def follow(scene, x, w):
     """The first hit of the ray from x toward w, which starts on the side of the surface that w points to."""
     side = 1.0 if dot(w, x.n) > 0.0 else -1.0
     scene.tally[SHADOW_RAYS] += 1
-    return intersect(scene, round32(x.p + x.n * (side * x.slack)), round32(w), TNEAR, math.inf)
+    return intersect(scene, round32(x.p + x.n * (side * x.slack)), direction32(w), TNEAR, math.inf)
 
 
 @njit

@@ -18,6 +18,7 @@ from raylab.triangles import proportions
 
 Array = npt.NDArray[np.float64]
 
+CENTRE_BITS = 10  # the centre is a multiple of 2^-10 of the scene's size
 QUADRIC_SEGMENTS = 8  # parts of the shutter interval for which Embree holds boxes of what is not a mesh
 
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
@@ -70,6 +71,9 @@ class Placement:
         extent = float(np.max(np.maximum(upper - centre, centre - lower)))
         if extent == 0.0:
             return cls(centre, 1.0)
+        step = 2.0 ** (math.frexp(extent)[1] - CENTRE_BITS)  # so that a moved scene is rounded to float32 as before
+        centre = np.floor(centre / step + 0.5) * step
+        extent = float(np.max(np.maximum(upper - centre, centre - lower)))
         _, exponent = math.frexp(extent)  # extent = m * 2^exponent with 1/2 <= m < 1
         return cls(centre, 2.0**-exponent)
 

@@ -27,7 +27,7 @@ from raylab.brdf import reflect
 from raylab.embree import TNEAR
 from raylab.jit import njit
 from raylab.sampling import PI, cos_power, from_frame, sample_disk, sample_phong_lobe
-from raylab.surface import SHADOW_RAYS, intersect, round32
+from raylab.surface import SHADOW_RAYS, direction32, intersect, round32
 from raylab.vec3 import black, dot, normalize
 
 
@@ -70,7 +70,7 @@ def light_from(scene, x, w, N):
     if dot(w, N) <= 0.0 or dot(w, x.n) <= 0.0:
         return black
     scene.tally[SHADOW_RAYS] += 1
-    hit = intersect(scene, round32(x.p + x.n * x.slack), round32(w), TNEAR, math.inf)
+    hit = intersect(scene, round32(x.p + x.n * x.slack), direction32(w), TNEAR, math.inf)
     if not hit.found:
         return scene.environment.eval(w)
     return scene.emission.of_shape(hit.shape) if hit.front else black

@@ -10,7 +10,7 @@ import math
 
 from raylab.embree import blocked
 from raylab.jit import njit
-from raylab.surface import INVALID_RAYS, SHADOW_RAYS, is_valid_ray, round32
+from raylab.surface import INVALID_RAYS, SHADOW_RAYS, direction32, is_valid_ray, round32
 from raylab.vec3 import absolute, dot
 
 
@@ -30,13 +30,13 @@ def shadow_toward(scene, x, w):
     """True when something stands in the direction w seen from x (slide: shadow(x, w))."""
     if dot(x.n, w) <= 0.0:
         return True
-    return is_blocked(scene, round32(x.p + x.n * x.slack), round32(w), math.inf)
+    return is_blocked(scene, round32(x.p + x.n * x.slack), direction32(w), math.inf)
 
 
 @njit
 def is_blocked(scene, o, d, tfar):
     """Trace a shadow ray, and count it; an invalid ray is counted as such and lets no light through."""
-    if not is_valid_ray(o, d):
+    if not (is_valid_ray(o, d) and tfar > 0.0):
         scene.tally[INVALID_RAYS] += 1
         return True
     scene.tally[SHADOW_RAYS] += 1

@@ -64,6 +64,15 @@ def round32(v):
 
 
 @njit
+def direction32(w):
+    """w as Embree sees it; its answers are wrong for lengths below 1e-18 and above 1e30, so such a w is made a unit."""
+    ww = dot(w, w)
+    if 2.0**-100 < ww < 2.0**100 or ww == 0.0:
+        return round32(w)
+    return round32(w * (1.0 / math.sqrt(ww)))  # NaN and infinities stay invalid
+
+
+@njit
 def is_valid_ray(o, d):
     """Embree takes a thousand times longer over a ray with a NaN, and silently misses with others."""
     dd = dot(d, d)
@@ -78,7 +87,7 @@ def no_hit():
 @njit
 def intersect(scene, o, d, tnear, tfar):
     """The first hit of the ray o + t d, tnear <= t <= tfar; o and d hold float32 values. Invalid rays are counted."""
-    if not is_valid_ray(o, d):
+    if not (is_valid_ray(o, d) and 0.0 <= tnear < tfar):
         scene.tally[INVALID_RAYS] += 1
         return no_hit()
     geometry, primitive = trace(scene.embree, o, d, tnear, tfar, scene.motion.time())

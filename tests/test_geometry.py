@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from raylab import description as d
 from raylab import quadrics
 from raylab.errors import SceneError
-from raylab.geometry import Placement, gather, quadric_box, quadric_row, world_mesh
+from raylab.geometry import CENTRE_BITS, Placement, gather, quadric_box, quadric_row, world_mesh
 from raylab.triangles import CHUNK, degenerate_faces
 
 SKEW = np.array([[2.0, 0.3, 0.0, 1.0], [0.0, 0.5, -0.2, -2.0], [0.1, 0.0, 1.0, 0.5], [0, 0, 0, 1]])
@@ -220,7 +220,7 @@ def test_a_placement_is_a_power_of_two_that_brings_everything_into_the_unit_box(
     assert math.frexp(placement.scale)[0] == 0.5  # a power of two
     corner = placement.points(np.array([centre - reach, centre + reach]))
     assert 0.5 <= np.abs(corner).max() <= 1.0
-    assert corner[0] == pytest.approx(-corner[1], abs=8 * U53)
+    assert corner[0] == pytest.approx(-corner[1], abs=2.0**-CENTRE_BITS)
 
 
 def test_scaling_a_scene_by_a_power_of_two_changes_no_bit():
@@ -230,6 +230,17 @@ def test_scaling_a_scene_by_a_power_of_two_changes_no_bit():
     for k in (-60, 3, 60):
         scaled = Placement.around([(box[0] * 2.0**k, box[1] * 2.0**k)]).points(x * 2.0**k)
         assert np.array_equal(scaled, plain)
+
+
+@pytest.mark.parametrize("shift", [1.0, -1024.0, 2.0**29, [1e9, 0.7e9, -0.4e9]])
+def test_moving_a_scene_changes_no_bit_of_what_float64_has_for_it(shift):  # A11
+    """Wherever the middle of its box is rounded to."""
+    rng = np.random.default_rng(4)
+    for _ in range(200):
+        x = np.round(rng.normal(size=(8, 3)) * 2.0**22) * 2.0**-22  # so that the sum with the shift is exact
+        boxes = [(x.min(axis=0), x.max(axis=0))]
+        moved = [(low + shift, high + shift) for low, high in boxes]
+        assert np.array_equal(Placement.around(moved).points(x + shift), Placement.around(boxes).points(x))
 
 
 def test_the_placement_of_nothing_and_of_one_point():
