@@ -1,4 +1,4 @@
-"""Odd rays: not numbers, no direction, directions of any length; how rays lie in memory, and what embreex makes of it."""
+"""Odd rays: not numbers, no direction, a direction of any length; where rays lie in memory; the caller's arrays."""
 
 from __future__ import annotations
 
@@ -207,10 +207,10 @@ def embreex_faults() -> float:
     construction = importlib.import_module("embreex.mesh_construction")
     triangle = np.array([[[-1.0, -1, 0], [1, -1, 0], [0, 1, 0]]], np.float32)
     scene = core.EmbreeScene()
-    kept = [construction.TriangleMesh(scene, triangle + np.float32([0, 0, 5.0]))]
+    kept = [construction.TriangleMesh(scene, triangle + np.array([0, 0, 5], np.float32))]
     o, w = np.zeros((1, 3), np.float32), np.array([[0, 0, 1]], np.float32)
     limits = np.full(1, 100.0, np.float32)
     scene.run(o, w, dists=limits, query="DISTANCE")
-    kept.append(construction.TriangleMesh(scene, triangle + np.float32([0, 0, 2.0])))
+    kept.append(construction.TriangleMesh(scene, triangle + np.array([0, 0, 2], np.float32)))
     distance = scene.run(o, w, query="DISTANCE")[0]
     return float((limits[0] != 100.0) + (distance != 2.0))
