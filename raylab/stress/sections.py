@@ -6,7 +6,7 @@ import importlib
 
 MODULES = (
 MODULES = (
-    "self_shadows", "shadow_rays", "odd_rays",
+    "self_shadows", "shadow_rays", "odd_rays", "meshes", "watertight", "cameras", "semantics",
     "solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices", "lobes", "reflection", "boundaries", "frames", "skies",
 )  # fmt: skip
 

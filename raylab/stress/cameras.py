@@ -1,0 +1,1 @@
+"""Camera, lens and time at their limits."""

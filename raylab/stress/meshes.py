@@ -1,0 +1,1 @@
+"""What is refused, dropped or warned about when a mesh is loaded."""

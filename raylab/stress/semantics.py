@@ -1,0 +1,1 @@
+"""What Python and numba make of NaN, of zero and of overflow."""

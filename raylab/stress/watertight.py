@@ -1,0 +1,1 @@
+"""Closed bodies that let no ray out; hits on very wide boxes."""
