@@ -5,9 +5,9 @@ from __future__ import annotations
 import importlib
 
 MODULES = (
-MODULES = (
     "self_shadows", "shadow_rays", "odd_rays", "meshes", "watertight", "cameras", "semantics",
-    "solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices", "lobes", "reflection", "boundaries", "frames", "skies",
+    "solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices",
+    "lobes", "reflection", "boundaries", "frames", "skies",
 )  # fmt: skip
 
 
