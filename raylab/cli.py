@@ -111,12 +111,12 @@ def render_command(
     loaded, load_seconds = _load(scene, parameters)
     own = commands_student.own_shade(shade, task, loaded, spp, _say)
     if own and not outputs:
-        outputs = (own.picture(loaded),)
+        outputs = (own.picture,)
     if any(path.suffix.lower() == ".png" for path in outputs):
         threading.Thread(target=_prepare_png, daemon=True).start()
     with Bar(progress, seconds, relative_error) as bar, own.explained() if own else nullcontext():
         image = raylab.render(
-            loaded, own.function if own else shade, sampler=sampler, spp=spp, seconds=seconds,
+            own.scene if own else loaded, own.function if own else shade, sampler=sampler, spp=spp, seconds=seconds,
             relative_error=relative_error, seed=seed, threads=threads, progress=bar,
         )  # fmt: skip
     for path in outputs:
@@ -130,7 +130,7 @@ def render_command(
     if own and complete:
         names = {name for name, _ in map(_parameter, parameters)}
         with Bar(progress) as bar:
-            complete, said = commands_student.compare(own, loaded, image, names, threads, bar, outputs[0], result)
+            complete, said = commands_student.compare(own, image, names, threads, bar, outputs[0], result)
     text = "\n".join(filter(None, (_summary(result, outputs), said)))
     click.echo(json.dumps(result, allow_nan=False) if as_json else text)
     return 0 if complete else INTERRUPTED

@@ -82,21 +82,21 @@ def own_shade(shade: str, task: str, scene: Any, spp: int | None, say: Callable[
 
 
 def compare(
-    own: Own, scene: Any, image: Any, parameters: set[str], threads: int | None, progress: Any, picture: Path,
+    own: Own, image: Any, parameters: set[str], threads: int | None, progress: Any, picture: Path,
     result: dict[str, Any],
 ) -> tuple[bool, str]:  # fmt: skip
     """Whether there was time for it, and what there is to say; `result` gets the numbers."""
     try:
-        reference = own.reference(scene, image, parameters, threads, progress)
+        reference = own.reference(image, parameters, threads, progress)
     except KeyboardInterrupt:
         return False, "Stopped by Ctrl-C before there was a reference; the picture is kept."
     if reference is None:
         return True, (
             "There is no reference: this raylab has not the solution, and the picture that it keeps is that of "
-            f"{own.assignment.scenes.get(own.task.id, 'no scene')} as it was given, in its own size."
+            f"{own.assignment.scenes.get(own.tasks[0].id, 'no scene')} as it was given, in its own size."
         )
     out = picture.with_name(f"{picture.stem}_compared.png")
-    comparison = own.compare(image, reference, scene, out)
+    comparison = own.compare(image, reference, out)
     result["comparison"] = comparison.to_dict()
     wrote = f"Wrote {out}: yours, the reference ({reference.source}), the difference."
     return True, "\n".join((comparison.numbers, comparison.verdict, wrote))
