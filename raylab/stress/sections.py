@@ -5,10 +5,26 @@ from __future__ import annotations
 import importlib
 
 MODULES = (
-    "self_shadows", "shadow_rays", "odd_rays", "meshes", "watertight", "cameras", "semantics",
-    "solid_angles", "cones", "rectangles", "nearness", "stiff_lights", "choices",
-    "lobes", "reflection", "boundaries", "frames", "skies",
-)  # fmt: skip
+    "self_shadows",
+    "shadow_rays",
+    "odd_rays",
+    "meshes",
+    "watertight",
+    "cameras",
+    "semantics",
+    "solid_angles",
+    "cones",
+    "rectangles",
+    "nearness",
+    "stiff_lights",
+    "choices",
+    "lobes",
+    "reflection",
+    "boundaries",
+    "frames",
+    "skies",
+    "randomness",
+)
 
 
 def load() -> None:
