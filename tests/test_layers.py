@@ -20,7 +20,8 @@ ORDER = [
     "emitters", "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe",
     "plain", "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "stats",
     "study", "figures", "demo", "trials", "submission", "estimator_check", "estimator_watch", "metamorphic", "testing",
-    "pytest_plugin", "grading", "stress", "commands_student", "commands_staff", "cli",
+    "pytest_plugin", "grading", "stress", "options", "commands_student",
+    "commands_render", "commands_staff", "cli",
 ]  # fmt: skip
 NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
 NUMBA_INTERNALS |= {"submission/compile", "submission/wall"}
