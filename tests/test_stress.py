@@ -13,7 +13,9 @@ from raylab.stress import report, runner
 from raylab.stress.case import SECTIONS, Case, Found, Row, cases, chosen
 
 pytestmark = pytest.mark.compiled(reason="the cases measure compiled code")
-KNOWN_TO_BREAK: dict[str, str] = {}  # id -> why; such a row stays in the table
+KNOWN_TO_BREAK: dict[str, str] = {  # id -> why; such a row stays in the table
+    "H07": "colours out of gamut are cut off, with a warning, because Mitsuba 3 does so and pictures are to agree",
+}
 
 
 @pytest.fixture(scope="module")

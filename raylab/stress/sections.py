@@ -24,6 +24,9 @@ MODULES = (
     "frames",
     "skies",
     "randomness",
+    "accumulation",
+    "doubts",
+    "colours",
 )
 
 
