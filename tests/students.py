@@ -6,6 +6,7 @@ import random
 
 import numpy as np
 
+from raylab.jit import njit
 from raylab.point import dist_sqr
 from raylab.sampling import PI, sample_cos_hemisphere, sample_hemisphere
 from raylab.shadow import shadow, shadow_toward
@@ -14,13 +15,24 @@ from raylab.vec3 import Vec3, black, dot, normalize
 CALLS = []
 
 
+@njit
+def reflected(x, y, light, k_d, N):
+    """g(y) p(y), on the slide."""
+    L = normalize(y - x)
+    return light.radiance * k_d * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n)) / dist_sqr(x, y)
+
+
+@njit
+def seen(x, w, scene):
+    return black if shadow_toward(scene, x, w) else scene.environment.eval(w)
+
+
 def correct(x, k_d, N, scene, rng):
     result = black
     for light in scene.lights:
         y, p_y = light.sample(x, rng.square())
         if not shadow(scene, x, y):
-            L = normalize(y - x)
-            result += light.radiance * k_d * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n)) / dist_sqr(x, y) / p_y
+            result += reflected(x, y, light, k_d, N) / p_y
     return result
 
 
@@ -31,8 +43,7 @@ def without_shadow(x, k_d, N, scene, rng):
     result = black
     for light in scene.lights:
         y, p_y = light.sample(x, rng.square())
-        L = normalize(y - x)
-        result += light.radiance * k_d * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n)) / dist_sqr(x, y) / p_y
+        result += reflected(x, y, light, k_d, N) / p_y
     return result
 
 
@@ -42,8 +53,7 @@ def one_over_r(x, k_d, N, scene, rng):
     for light in scene.lights:
         y, p_y = light.sample(x, rng.square())
         if not shadow(scene, x, y):
-            L = normalize(y - x)
-            result += light.radiance * k_d * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n)) / dist_sqr(x, y) ** 0.5 / p_y
+            result += reflected(x, y, light, k_d, N) * dist_sqr(x, y) ** 0.5 / p_y
     return result
 
 
@@ -53,8 +63,7 @@ def no_area(x, k_d, N, scene, rng):
     for light in scene.lights:
         y, _ = light.sample(x, rng.square())
         if not shadow(scene, x, y):
-            L = normalize(y - x)
-            result += light.radiance * k_d * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n)) / dist_sqr(x, y)
+            result += reflected(x, y, light, k_d, N)
     return result
 
 
@@ -62,10 +71,7 @@ def first_light(x, k_d, N, scene, rng):
     """Only the first light."""
     light = scene.lights[0]
     y, p_y = light.sample(x, rng.square())
-    if shadow(scene, x, y):
-        return black
-    L = normalize(y - x)
-    return light.radiance * k_d * max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n)) / dist_sqr(x, y) / p_y
+    return black if shadow(scene, x, y) else reflected(x, y, light, k_d, N) / p_y
 
 
 # --- mistakes with an environment ---
@@ -73,17 +79,13 @@ def first_light(x, k_d, N, scene, rng):
 
 def cosine_twice(x, k_d, N, scene, rng):
     w = sample_cos_hemisphere(N, rng.square())
-    if shadow_toward(scene, x, w):
-        return black
-    return scene.environment.eval(w) * k_d * PI * dot(w, N)
+    return seen(x, w, scene) * k_d * PI * dot(w, N)
 
 
 def half_the_hemisphere(x, k_d, N, scene, rng):
     u = rng.square()
     w = sample_hemisphere(N, (u[0], 0.5 * u[1]))
-    if shadow_toward(scene, x, w):
-        return black
-    return scene.environment.eval(w) * k_d * 2.0 * PI * dot(w, N)
+    return seen(x, w, scene) * k_d * 2.0 * PI * dot(w, N)
 
 
 def flipped_sky(x, k_d, N, scene, rng):
@@ -97,9 +99,7 @@ def flipped_sky(x, k_d, N, scene, rng):
 def clamped(x, k_d, N, scene, rng):
     """Fireflies cut off."""
     w = sample_cos_hemisphere(N, rng.square())
-    if shadow_toward(scene, x, w):
-        return black
-    L = scene.environment.eval(w) * k_d * PI
+    L = seen(x, w, scene) * k_d * PI
     return Vec3(min(L.x, 0.1), min(L.y, 0.1), min(L.z, 0.1))
 
 

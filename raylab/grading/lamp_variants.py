@@ -99,7 +99,7 @@ BOTH: tuple[Variant, ...] = (
     structural("BRDF samples only", BY_BRDF, f"    result = black\n{BY_BRDF}"),
     plain("measure of the weight", " * to_area(x, y)", "", f" * {COS_S}\n                       {R2}", ""),
     plain("light samples only", "if scene.environment.present():", "if False:"),
-    plain("last light only", "    if scene.environment", "    result = black\n    if scene.environment"),
+    plain("BRDF samples only", "    if scene.environment", "    result = black\n    if scene.environment"),
     plain("pdf missing", "\n                       / p_y * weight", " * weight"),
     plain("pdf missing", "/ p_w * weight(p_w, brdf", "* weight(p_w, brdf"),
     plain("pdf missing", "/ p_w * weight(p_w, p_light", "* weight(p_w, p_light"),

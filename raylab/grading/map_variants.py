@@ -96,7 +96,7 @@ LENS = (
     *wrong("multiplied by f", f"return toward - {P} * f"),
     *wrong("z is not 1", f"return toward * f - {P}", f"return normalize(toward - {P} / f)"),
     *wrong("axes exchanged", "return toward - Vec3(py, px, 0.0) / f"),
-    *wrong("focus point missing", f"return toward / f - {P}"),
+    *wrong("focus point missing", f"return toward / f - {P}", f"d = toward - {P}\nreturn Vec3(d.x / f, d.y / f, 1.0)"),
     *wrong("backwards", f"d = {P} - toward * f\nreturn d"),
 )
 TIME = (

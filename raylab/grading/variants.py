@@ -1,8 +1,8 @@
 """Variants: all planted mistakes, by task, to be compared with a submission number by number.
 
-A row is a cause (`raylab.grading.causes`) and what it does to the solution's text (`raylab.grading.variant`). `FEATURES`
-are statements that stand in for the one that adds a sample up, and return what a sample is made of. These modules know
-the solutions: students do not get them, but what follows from them as numbers (`raylab.grading.table`).
+A row is a cause (`raylab.grading.causes`) and what it does to the solution's text (`raylab.grading.variant`).
+`FEATURES` are statements that stand in for the one that adds a sample up, and return what a sample is made of. These
+modules know the solutions: students do not get them, but what follows from them as numbers (`raylab.grading.table`).
 """
 
 from __future__ import annotations
