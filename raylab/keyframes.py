@@ -44,10 +44,24 @@ def check(motion: d.Animation, what: str) -> None:
 
 def decompose(matrix: Array) -> tuple[Array, Array, Array]:
     """Translation (3,), rotation (3, 3) and symmetric stretch (3, 3) with matrix = T R S."""
-    u, values, vt = np.linalg.svd(matrix[:3, :3])
-    rotation, stretch = u @ vt, vt.T * values @ vt
+    rotation, stretch = matrix[:3, :3], np.eye(3)
+    if np.abs(rotation.T @ rotation - stretch).max() > 8 * np.finfo(float).eps:  # else it is a rotation, or mirrors
+        u, values, vt = np.linalg.svd(rotation)
+        rotation, stretch = u @ vt, vt.T * values @ vt
     sign = np.sign(np.linalg.det(rotation))
     return matrix[:3, 3], rotation * sign, stretch * sign
+
+
+def rotation_between(first: Array, last: Array) -> Array:
+    """The axis times the angle, radians, that turns one rotation into another; small angles from their difference."""
+    d = first.T @ (last - first)  # R - I
+    if np.abs(d).max() > 1e-3:
+        from scipy.spatial.transform import Rotation
+
+        return np.asarray(Rotation.from_matrix(first.T @ last).as_rotvec())
+    v = np.array([d[2, 1] - d[1, 2], d[0, 2] - d[2, 0], d[1, 0] - d[0, 1]]) / 2.0  # the axis times the sine
+    sine = float(np.linalg.norm(v))
+    return v * (math.asin(sine) / sine) if sine > 0.0 else v
 
 
 @dataclass(frozen=True)
@@ -65,12 +79,9 @@ class Piece:
     @classmethod
     def between(cls, start: float, end: float, first: Array, last: Array) -> Piece:
         """From one keyframe to the next, the shorter way round."""
-        from scipy.spatial.transform import Rotation
-
         (t0, r0, s0), (t1, r1, s1) = decompose(first), decompose(last)
-        turn = np.zeros(3)
-        if not np.array_equal(first[:3, :3], last[:3, :3]):
-            turn = Rotation.from_matrix(r0.T @ r1).as_rotvec()
+        same = np.array_equal(first[:3, :3], last[:3, :3])
+        turn = np.zeros(3) if same else rotation_between(r0, r1)
         angle = float(np.linalg.norm(turn))
         axis = turn / angle if angle > 0.0 else np.array([0.0, 0.0, 1.0])
         return cls(start, end, (t0, t1), r0, axis, angle, (s0, s1))

@@ -20,6 +20,7 @@ from raylab.vec3 import Vec3, length
 from raylab.view import View
 
 Array = npt.NDArray[np.float64]
+WIDEST = 1e12  # radius of an aperture over its focus distance: beyond, eye rays have no direction but sideways
 
 
 def has_lens(camera: d.Camera) -> bool:
@@ -109,6 +110,11 @@ def check_camera(camera: d.Camera) -> None:
         raise SceneError(f"camera: aperture_radius must be finite and not negative, got {camera.aperture_radius}")
     if not camera.focus_distance > 0.0:
         raise SceneError(f"camera: focus_distance must be positive, or inf, got {camera.focus_distance}")
+    if camera.aperture_radius > WIDEST * camera.focus_distance:
+        raise SceneError(
+            f"camera: focus_distance must not be below {1.0 / WIDEST:.0e} of aperture_radius, "
+            f"got {camera.focus_distance} and {camera.aperture_radius}"
+        )
     if camera.aperture_blades != 0 and camera.aperture_blades < 3:
         raise SceneError(f"camera: aperture_blades must be 0, a disk, or at least 3, got {camera.aperture_blades}")
     if not math.isfinite(camera.aperture_rotation):

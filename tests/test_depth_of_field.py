@@ -162,6 +162,7 @@ BAD = [
     ({"focus_distance": 0.0}, "focus_distance must be positive, or inf, got 0.0"),
     ({"focus_distance": -1.0}, "focus_distance"),
     ({"focus_distance": math.nan}, "focus_distance"),
+    ({"focus_distance": 1e-300}, "must not be below 1e-12 of aperture_radius, got 1e-300"),
     ({"aperture_blades": 2}, "aperture_blades must be 0, a disk, or at least 3, got 2"),
     ({"aperture_rotation": math.nan}, "aperture_rotation"),
 ]

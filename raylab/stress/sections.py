@@ -11,6 +11,7 @@ MODULES = (
     "meshes",
     "watertight",
     "cameras",
+    "poses",
     "semantics",
     "solid_angles",
     "cones",
