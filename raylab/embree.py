@@ -4,8 +4,7 @@ The embreex wheel carries Embree's C library. ctypes builds the scene; compiled 
 `rtcOccluded1` directly. Embree answers *which* primitive and *whether*; where, and with what normal, is recomputed
 in float64 by the caller. Coordinates are the normalised ones of `raylab.scene` (all within [-1, 1]).
 
-Rays go one by one (`trace`, `blocked`) or, when many start alike, in a `Packet` (`trace_packet`, `rtcIntersect16`),
-which costs a third as much.
+Rays go one by one (`trace`, `blocked`) or, when many start alike, in a `raylab.packet`.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from __future__ import annotations
 import ctypes
 import importlib.metadata
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -24,10 +23,8 @@ from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
 from raylab.callbacks import quadric_callbacks
-from raylab.jit import OPTIONS, njit
-from raylab.record import record
+from raylab.jit import OPTIONS
 from raylab.vec3 import Vec3, Vec3Type
-from raylab.view import View
 
 TNEAR = 2.0**-100  # robust mode counts a hit at t = tnear, so tnear = 0 would meet the surface the ray starts on
 _TRIANGLES, _USER, _INDEX, _VERTEX, _UINT3, _FLOAT3, _ROBUST = 0, 120, 0, 1, 0x5003, 0x9003, 4
@@ -162,7 +159,7 @@ class EmbreeScene:
 
 # --- rays from compiled code: an RTCRay (48 bytes) or RTCRayHit (96 bytes), 16-byte aligned, on the stack ---
 
-_F32, _I32, _I64, _I8P = ir.FloatType(), ir.IntType(32), ir.IntType(64), ir.IntType(8).as_pointer()
+_F32, INT32, _I64, BYTES = ir.FloatType(), ir.IntType(32), ir.IntType(64), ir.IntType(8).as_pointer()
 
 
 def _new_ray(builder, words, o, d, tnear, tfar, time):
@@ -172,19 +169,19 @@ def _new_ray(builder, words, o, d, tnear, tfar, time):
     for k, v in enumerate((*o, tnear, *d, time, tfar)):
         builder.store(builder.fptrunc(v, _F32), _word(builder, ray, k))
     for k, v in ((9, -1), (10, 0), (11, 0)):  # mask, id, flags
-        builder.store(ir.Constant(_I32, v), _word(builder, ray, k, _I32))
+        builder.store(ir.Constant(INT32, v), _word(builder, ray, k, INT32))
     return ray
 
 
 def _word(builder, ray, k, element=_F32):
-    address = builder.gep(ray, [ir.Constant(_I32, 0), ir.Constant(_I32, k)])
+    address = builder.gep(ray, [ir.Constant(INT32, 0), ir.Constant(INT32, k)])
     return address if element is _F32 else builder.bitcast(address, element.as_pointer())
 
 
-def _call(builder, name, *pointers):
-    signature = ir.FunctionType(ir.VoidType(), [_I8P] * len(pointers))
+def call(builder, name, *pointers):
+    signature = ir.FunctionType(ir.VoidType(), [BYTES] * len(pointers))
     function = cgutils.get_or_insert_function(builder.module, signature, name)
-    builder.call(function, [builder.bitcast(p, _I8P) for p in pointers])
+    builder.call(function, [builder.bitcast(p, BYTES) for p in pointers])
 
 
 def _components(context, builder, value):
@@ -200,9 +197,9 @@ def _trace(typing_context, handle, o, d, tnear, tfar, time):
         handle, o, d, *interval = arguments
         ray = _new_ray(builder, 24, _components(context, builder, o), _components(context, builder, d), *interval)
         for k in (17, 18, 19, 20):  # primID, geomID, instID, instPrimID: none
-            builder.store(ir.Constant(_I32, -1), _word(builder, ray, k, _I32))
-        _call(builder, "rtcIntersect1", builder.inttoptr(handle, _I8P), ray, ir.Constant(_I8P, None))
-        ids = [builder.sext(builder.load(_word(builder, ray, k, _I32)), _I64) for k in (18, 17)]
+            builder.store(ir.Constant(INT32, -1), _word(builder, ray, k, INT32))
+        call(builder, "rtcIntersect1", builder.inttoptr(handle, BYTES), ray, ir.Constant(BYTES, None))
+        ids = [builder.sext(builder.load(_word(builder, ray, k, INT32)), _I64) for k in (18, 17)]
         return context.make_tuple(builder, result, ids)
 
     return result(types.uint64, o, d, types.float64, types.float64, types.float64), codegen
@@ -214,7 +211,7 @@ def _blocked(typing_context, handle, o, d, tfar, time):
         handle, o, d, tfar, time = arguments
         interval = (ir.Constant(ir.DoubleType(), TNEAR), tfar, time)
         ray = _new_ray(builder, 12, _components(context, builder, o), _components(context, builder, d), *interval)
-        _call(builder, "rtcOccluded1", builder.inttoptr(handle, _I8P), ray, ir.Constant(_I8P, None))
+        call(builder, "rtcOccluded1", builder.inttoptr(handle, BYTES), ray, ir.Constant(BYTES, None))
         return builder.fcmp_ordered("<", builder.load(_word(builder, ray, 8)), ir.Constant(_F32, 0.0))
 
     return types.boolean(types.uint64, o, d, types.float64, types.float64), codegen
@@ -252,103 +249,3 @@ def _python_ray(o: Vec3, d: Vec3, tnear: float, tfar: float, time: float = 0.0) 
     words[:9] = [*o, tnear, *d, time, tfar]
     words[9:10].view(np.int32)[0] = -1
     return words
-
-
-# --- packets: an RTCRayHit16, word w of lane i at [w, i] ---
-
-LANES = 16
-_PACKET_WORDS = 24  # of an RTCRayHit, and room to spare
-_COHERENT = np.array([1 << 16, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], np.int32)  # RTCIntersectArguments: flags, features
-
-
-@njit
-def at(row, lane):
-    """Where word `row` of a lane stands."""
-    return row * LANES + lane
-
-
-@record
-class Packet(NamedTuple):
-    """LANES rays and their hits, in memory of one thread's own: word w of lane i at w LANES + i, so that the compiler
-    may treat several lanes side by side."""
-
-    words: View  # (24 LANES,) float32
-    ids: View  # the same memory as int32
-    valid: View  # (LANES,) int32: -1 for a lane in use, 0 for one that is not
-    points: View  # (4 LANES,) float64: two random points of which each ray is made
-
-    def draw(self, lane, first, second, time):
-        """Keep what a lane's ray will be made of: two points of the unit square and a time in [0, 1]."""
-        self.points[at(0, lane)], self.points[at(1, lane)] = first
-        self.points[at(2, lane)], self.points[at(3, lane)] = second
-        self.words[at(7, lane)] = time
-
-    def drawn(self, lane):
-        """The two points and the time."""
-        points = self.points
-        first, second = (points[at(0, lane)], points[at(1, lane)]), (points[at(2, lane)], points[at(3, lane)])
-        return first, second, self.time(lane)
-
-    def put(self, lane, o, d, tfar, valid):
-        """Set a lane to the ray o + t d, 0 <= t <= tfar, at the time that was drawn."""
-        words = self.words
-        words[at(0, lane)], words[at(1, lane)], words[at(2, lane)] = o.x, o.y, o.z
-        words[at(4, lane)], words[at(5, lane)], words[at(6, lane)] = d.x, d.y, d.z
-        words[at(8, lane)] = tfar
-        self.valid[lane] = -1 if valid else 0
-
-    def clear(self, used):
-        """No hits yet, and lanes `used`, used + 1, ... are not traced. Embree leaves the words in between alone."""
-        for lane in range(LANES):
-            self.ids[at(9, lane)] = -1
-            self.ids[at(18, lane)] = -1
-        for lane in range(used, LANES):
-            self.valid[lane] = 0
-
-    def o(self, lane):
-        return Vec3(self.words[at(0, lane)], self.words[at(1, lane)], self.words[at(2, lane)])
-
-    def d(self, lane):
-        return Vec3(self.words[at(4, lane)], self.words[at(5, lane)], self.words[at(6, lane)])
-
-    def time(self, lane):
-        return np.float64(self.words[at(7, lane)])
-
-    def hit(self, lane):
-        """(geometry, primitive) that the lane's ray met first; geometry -1 for nothing."""
-        return np.int64(self.ids[at(18, lane)]), np.int64(self.ids[at(17, lane)])
-
-
-def new_packet() -> Packet:
-    """A packet in memory aligned as Embree wants it; what no ray changes (tnear, id, flags) is 0."""
-    memory = np.zeros((_PACKET_WORDS + 2) * LANES, np.float32)
-    start = (-memory.ctypes.data % 64) // 4
-    words, valid = np.split(memory[start:][: (_PACKET_WORDS + 1) * LANES], [_PACKET_WORDS * LANES])
-    return Packet(View(words), View(words.view(np.int32)), View(valid.view(np.int32)), View(np.full(4 * LANES, 0.5)))
-
-
-def trace_packet(handle, packet):
-    """Let each lane in use find its first hit: `packet.hit`."""
-    words, valid = packet.words.array, packet.valid.array
-    library().rtcIntersect16(valid.ctypes.data, int(handle), words.ctypes.data, _COHERENT.ctypes.data)
-
-
-@intrinsic
-def _trace_packet(typing_context, handle, words, valid):
-    def codegen(context, builder, signature, arguments):
-        handle, words, valid = arguments
-        memory = [
-            cgutils.create_struct_proxy(t)(context, builder, value=v).data
-            for t, v in zip(signature.args[1:], (words, valid), strict=True)
-        ]
-        content = ir.Constant(ir.ArrayType(_I32, len(_COHERENT)), [int(v) for v in _COHERENT])
-        options = cgutils.global_constant(builder, "raylab_coherent", content)
-        options.align = 16
-        _call(builder, "rtcIntersect16", memory[1], builder.inttoptr(handle, _I8P), memory[0], options)
-
-    return types.void(types.uint64, words, valid), codegen
-
-
-@overload(trace_packet, jit_options=OPTIONS)
-def _overload_trace_packet(handle, packet):
-    return lambda handle, packet: _trace_packet(handle, packet.words, packet.valid)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from raylab.embree import LANES, trace_packet
 from raylab.jit import cached_njit, njit
+from raylab.packet import LANES, trace_packet
 from raylab.surface import BACK, FRONT, INVALID_RAYS, hit_of, is_valid_ray
 from raylab.vec3 import Vec3, black, is_finite, normalize
 from raylab.view import View

@@ -18,10 +18,11 @@ import numpy as np
 import numpy.typing as npt
 
 from raylab import samplers
-from raylab.embree import LANES, TNEAR, new_packet
+from raylab.embree import TNEAR
 from raylab.errors import UserError
 from raylab.jit import cached_njit, entry_point, njit
 from raylab.motion import own_copy
+from raylab.packet import LANES, new_packet
 from raylab.pixels import radiance, send
 from raylab.render import default_threads
 from raylab.scene import Scene

@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from raylab import samplers
-from raylab.embree import LANES, new_packet
 from raylab.errors import UserError
 from raylab.image import Image, estimate, invalid
 from raylab.jit import entry_point
 from raylab.motion import own_copy
+from raylab.packet import LANES, new_packet
 from raylab.pixels import COUNT, cached_accumulate, fresh_accumulate, new_accumulator, view
 from raylab.scene import Scene
 from raylab.strategies import strategy

@@ -6,10 +6,13 @@ tiles ask. Integers are 64 bits wide and wrap; `u64` keeps them so in compiled c
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba.extending import overload
 
 from raylab.jit import OPTIONS, njit
+from raylab.view import View
 
 _MASK = (1 << 64) - 1
 _GOLDEN = 0x9E3779B97F4A7C15  # 2^64 / golden ratio: Steele, Lea, Flood 2014, "Fast splittable PRNGs"
@@ -69,3 +72,13 @@ def permute(i, n, key):
         x = (left << half) | right
         if x < n:
             return (x + int(combine(key, -1) >> u64(11))) % n
+
+
+class Counter(NamedTuple):
+    """The dimension that the current sample draws next; one array for each thread."""
+
+    next: View
+
+
+def new_counter() -> Counter:
+    return Counter(View(np.zeros(1, np.int64)))

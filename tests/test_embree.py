@@ -12,8 +12,9 @@ from embreex import rtcore_scene
 from embreex.mesh_construction import TriangleMesh
 
 from raylab import description as d
-from raylab.embree import LANES, EmbreeScene, blocked, new_packet, trace, trace_packet
+from raylab.embree import EmbreeScene, blocked, trace
 from raylab.jit import njit
+from raylab.packet import LANES, new_packet, trace_packet
 from raylab.scene import Scene
 from raylab.surface import INVALID_RAYS, intersect
 from raylab.vec3 import Vec3, vec3_at

@@ -11,19 +11,19 @@ PACKAGE = Path(__file__).parents[1] / "raylab"
 
 # The reading path, top to bottom; then what stands beside it.
 ORDER = [
-    "_version", "errors", "description", "jit", "vec3", "view", "record", "pose", "rng", "samplers", "sampling",
-    "solid_angle", "mis", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point",
+    "_version", "errors", "atomic", "description", "jit", "vec3", "view", "record", "pose", "rng", "sobol", "samplers",
+    "sampling", "solid_angle", "mis", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point",
     "light_shapes", "lights", "light_choice",
-    "environment", "materials", "quadrics", "callbacks", "motion", "embree", "surface", "shadow",
+    "environment", "materials", "quadrics", "callbacks", "motion", "embree", "packet", "surface", "shadow",
     "shade", "beyond", "glossy", "direct", "basic", "lecture", "lens", "camera", "keyframes", "triangles",
-    "defects", "geometry",
-    "emitters", "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels", "image", "render", "probe",
+    "defects", "geometry", "emitters", "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels",
+    "image", "plan", "stopping", "checkpoint", "render", "probe",
     "plain", "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "stats",
     "study", "figures", "demo", "trials", "submission", "estimator_check", "estimator_watch", "metamorphic", "testing",
     "pytest_plugin", "grading", "stress", "options", "commands_student",
     "commands_render", "commands_staff", "cli",
 ]  # fmt: skip
-NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "callbacks"}
+NUMBA_INTERNALS = {"jit", "vec3", "view", "record", "rng", "embree", "packet", "callbacks"}
 NUMBA_INTERNALS |= {"submission/compile", "submission/wall"}
 SYSTEM_CALLS = {"grading/kernel", "grading/landlock", "grading/seccomp"}  # they need ctypes
 

@@ -15,8 +15,8 @@ from scenes import GLOSSY, camera, moved, outdoors, room
 
 from raylab import description as d
 from raylab import samplers
-from raylab.embree import new_packet
 from raylab.jit import entry_point
+from raylab.packet import new_packet
 from raylab.pixels import fresh_accumulate, new_accumulator, view
 from raylab.scene import FEATURES, Scene
 from raylab.strategies import strategy

@@ -11,9 +11,9 @@ from scenes import GREY, camera, lamp, moved, outdoors, room
 from scipy import stats
 
 from raylab import description as d
-from raylab.embree import LANES
 from raylab.errors import UserError
 from raylab.image import estimate
+from raylab.packet import LANES
 from raylab.pixels import COLUMNS, COUNT
 from raylab.render import STREAMS, render
 from raylab.scene import Scene

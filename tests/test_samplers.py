@@ -10,7 +10,7 @@ from helpers import ALPHA, COMPILED, chi_square_p, size
 from scipy import stats
 from scipy.stats import qmc
 
-from raylab import samplers
+from raylab import samplers, sobol
 from raylab.jit import njit
 from raylab.rng import combine
 
@@ -210,7 +210,7 @@ def unscrambled(first, n):
 
 def test_the_table_is_the_sequence_of_joe_and_kuo():
     index, want = unscrambled(0, 4096)
-    table = samplers.sobol_table()
+    table = sobol.sobol_table()
     assert table.shape == (4, 4096)
     for axis in range(4):
         assert [reversed_bits(x) for x in table[axis, index]] == want[:, axis].tolist()
@@ -228,7 +228,7 @@ def test_points_beyond_the_table_are_the_sequence_too(first):
 
 
 def scramble(x, seed):
-    return int(samplers.scramble_reversed(np.uint64(x), np.uint64(seed)))
+    return int(sobol.scramble_reversed(np.uint64(x), np.uint64(seed)))
 
 
 def test_the_scramble_keeps_common_digits_and_tells_the_next_apart():
@@ -245,7 +245,7 @@ def test_the_scramble_keeps_common_digits_and_tells_the_next_apart():
 
 def test_reverse_bits_reverses():
     for x in (0, 1, M32, 0x12345678, 1 << 31):
-        assert int(samplers.reverse_bits(np.uint64(x))) == reversed_bits(x)
+        assert int(sobol.reverse_bits(np.uint64(x))) == reversed_bits(x)
 
 
 def test_the_scramble_uses_all_of_its_seed():
@@ -284,7 +284,7 @@ def test_blocks_of_dimensions_are_shuffled_apart():
 def test_the_shuffle_of_points_keeps_every_dyadic_range(bits):
     for seed in (1, 2**32 + 5):
         low, high = 1 << bits, 2 << bits
-        image = [int(samplers.shuffle_index(i, np.uint64(seed))) for i in range(high)]
+        image = [int(sobol.shuffle_index(i, np.uint64(seed))) for i in range(high)]
         assert sorted(image[low:high]) == list(range(low, high))
         assert image[:2] == [0, 1]
 

@@ -20,8 +20,9 @@ import trimesh
 
 from raylab import description as d
 from raylab import samplers
-from raylab.embree import TNEAR, library, new_packet
+from raylab.embree import TNEAR, library
 from raylab.jit import njit
+from raylab.packet import new_packet
 from raylab.pixels import cached_accumulate, new_accumulator, view
 from raylab.render import render
 from raylab.scene import Scene
