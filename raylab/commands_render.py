@@ -15,7 +15,7 @@ from raylab import commands_student
 from raylab.explain import explain, measured
 from raylab.image import Image
 from raylab.options import INTERRUPTED, PARAMETERS, PROGRESS, SCENE, SEED, THREADS, load, parameter, say
-from raylab.render import Plan
+from raylab.plan import Plan
 from raylab.samplers import ALL_NAMES as SAMPLERS
 
 

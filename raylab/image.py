@@ -55,25 +55,25 @@ class Image:
 def estimate(accumulator: Array, independent: bool) -> tuple[Array, Array, Array]:
     """Mean (h, w, 3), standard error (h, w, 3) and samples (h, w) from (streams, h, w, COLUMNS).
 
-    Independent samples: SE^2 = sum (v - mean)^2 / (n (n - 1)). Otherwise samples of one stream depend on each other,
-    and the streams are compared: SE^2 = sum (m_r - mean)^2 / (R (R - 1)), over R streams.
+    Each of the R streams with samples counts the same, m = sum m_r / R. Independent samples: SE^2 = sum_r s_r^2 / n_r
+    / R^2 with s_r^2 = sum (v - m_r)^2 / (n_r - 1). Otherwise samples of one stream depend on each other, and the
+    streams are compared: SE^2 = sum (m_r - m)^2 / (R (R - 1)).
     """
     counts = accumulator[..., COUNT]
-    samples = counts.sum(axis=0)
+    some = (counts > 0)[..., None]
+    streams = some.sum(axis=0)
+    means = accumulator[..., MEAN : MEAN + 3]
     with np.errstate(divide="ignore", invalid="ignore"):
-        weights = counts / samples
-        means = accumulator[..., MEAN : MEAN + 3]
-        mean = np.where(weights[..., None] > 0.0, means * weights[..., None], 0.0).sum(axis=0)
-        mean[samples == 0] = np.nan
+        mean = np.where(some, means, 0.0).sum(axis=0) / streams
         if independent:
-            squares = accumulator[..., SQUARES : SQUARES + 3].sum(axis=0)
-            variance = squares / (samples * (samples - 1.0))[..., None]
+            n = counts[..., None]
+            spread = np.where(some, accumulator[..., SQUARES : SQUARES + 3] / (n * (n - 1.0)), 0.0).sum(axis=0)
+            variance = spread / streams**2
         else:
-            streams = (counts > 0).sum(axis=0)[..., None]
-            spread = np.where(counts[..., None] > 0, (means - mean) ** 2, 0.0).sum(axis=0)
+            spread = np.where(some, (means - mean) ** 2, 0.0).sum(axis=0)
             variance = spread / (streams * (streams - 1.0))
-    known = samples[..., None] > 1 if independent else streams > 1
-    return mean, np.where(known, np.sqrt(variance), np.nan), samples
+    known = (counts[..., None] > 1).all(axis=0) if independent else streams > 1
+    return mean, np.where(known, np.sqrt(variance), np.nan), counts.sum(axis=0)
 
 
 def invalid(accumulator: Array) -> int:

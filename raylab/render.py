@@ -23,51 +23,15 @@ from raylab.jit import entry_point
 from raylab.motion import own_copy
 from raylab.packet import LANES, new_packet
 from raylab.pixels import COUNT, cached_accumulate, fresh_accumulate, new_accumulator, view
+from raylab.plan import MAX_SAMPLES, Plan
 from raylab.scene import Scene
+from raylab.stopping import Halves
 from raylab.strategies import strategy
 from raylab.surface import INVALID_RAYS, SHADOW_RAYS, TALLIES
 from raylab.view import View
 
-# Independent scrambles of a picture (all samplers but one), from which its error is estimated. Each more costs
-# precision (1.3 times the variance of one scramble at 64 samples for two, 1.7 for four; 1.1 and 1.3 at 256), so few at
-# first.
-FEW_STREAMS, STREAMS, FEW_SAMPLES = 2, 4, 512
 SHORT = 0.5  # seconds: what can be done in this time is one pass
 FIRST_PASS = 1 << 22  # camera rays that the first pass may take over the whole picture
-MAX_SAMPLES = 1 << 30  # of one stream: Sobol' numbers have 32 bits
-
-
-@dataclass(frozen=True)
-class Plan:
-    """How many samples to take, checked: samples per stream, or a time, or an error."""
-
-    streams: int
-    samples: int = MAX_SAMPLES
-    seconds: float = float("inf")
-    relative_error: float = 0.0
-
-    @classmethod
-    def make(cls, sampler: str, spp: int | None, seconds: float | None, relative_error: float | None) -> Plan:
-        given = [
-            n for n, v in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)) if v is not None
-        ]
-        if sampler == "centre" and (spp not in (None, 1) or seconds or relative_error):
-            raise UserError("the sampler 'centre' takes one sample of each pixel, further ones would be the same")
-        if sampler == "centre":
-            return cls(1, samples=1)
-        if len(given) > 1:
-            raise UserError(f"expected one of spp, seconds and relative_error, got {' and '.join(given)}")
-        for name, value in (("spp", spp), ("seconds", seconds), ("relative_error", relative_error)):
-            if value is not None and not (value > 0 and value < float("inf")):
-                raise UserError(f"{name} must be positive, got {value}")
-        streams = 1 if sampler == "independent" else STREAMS
-        if spp is None:
-            return cls(streams, seconds=seconds or float("inf"), relative_error=relative_error or 0.0)
-        if spp > MAX_SAMPLES or int(spp) != spp:
-            raise UserError(f"spp must be a whole number up to {MAX_SAMPLES}, got {spp}")
-        streams = min(streams, FEW_STREAMS) if spp <= FEW_SAMPLES else streams
-        streams = next(r for r in range(streams, 0, -1) if spp % r == 0)
-        return cls(streams, samples=int(spp) // streams)
 
 
 @dataclass
@@ -94,6 +58,7 @@ class _Run:
     accumulator: Any = None
     kernel: Any = None
     tally: Any = field(default_factory=lambda: np.zeros(TALLIES, np.int64))
+    halves: Halves | None = None  # where it stops at an error
     taken: int = 0  # samples of each stream, complete over the picture
     compile_seconds: float = 0.0
     render_seconds: float = 0.0
@@ -159,6 +124,8 @@ def default_threads() -> int:
 def _execute(run: _Run, band_rows: int | None, progress: Callable[[Progress], None]) -> Image:
     camera = run.scene.description.camera
     run.accumulator = new_accumulator(run.plan.streams, camera.width, camera.height)
+    if run.plan.relative_error > 0.0:
+        run.halves = Halves(run.plan.relative_error, run.sampler == "independent")
     start = time.perf_counter()
     _compile(run)
     run.compile_seconds = time.perf_counter() - start
@@ -169,6 +136,8 @@ def _execute(run: _Run, band_rows: int | None, progress: Callable[[Progress], No
                 _one_pass(run, pool, first, last, band_rows, progress)
     except KeyboardInterrupt:
         complete = False
+    if run.halves:
+        run.accumulator = run.halves.picture(run.accumulator)
     return _image(run, complete)
 
 
@@ -194,6 +163,7 @@ def _passes(run: _Run) -> Iterator[tuple[int, int]]:
 
     A pass ends at 1 or at a multiple of LANES, so that which eye rays share a packet does not depend on the clock.
     """
+    halves = run.halves
     while run.taken < run.plan.samples:
         last = _first_pass(run)
         if run.taken > 0:
@@ -207,7 +177,7 @@ def _passes(run: _Run) -> Iterator[tuple[int, int]]:
         last = min(last, run.plan.samples)
         yield run.taken, last
         run.taken = last
-        if run.plan.relative_error > 0.0 and _so_far(run).relative_error <= run.plan.relative_error:
+        if halves and halves.stop(run.accumulator):
             return
 
 

@@ -15,7 +15,8 @@ from raylab.errors import UserError
 from raylab.image import estimate
 from raylab.packet import LANES
 from raylab.pixels import COLUMNS, COUNT
-from raylab.render import STREAMS, render
+from raylab.plan import STREAMS
+from raylab.render import render
 from raylab.scene import Scene
 from raylab.strategies import strategy
 from raylab.vec3 import Vec3
@@ -196,12 +197,12 @@ def test_pictures_of_a_pixel_do_not_depend_on_the_pass_schedule():
     np.testing.assert_array_equal(first.mean, again.mean)
 
 
-def test_estimate_weighs_streams_by_their_samples():
+def test_each_stream_counts_the_same_however_many_samples_it_has():
     accumulator = np.zeros((2, 1, 1, COLUMNS))
     accumulator[0, 0, 0, :3], accumulator[0, 0, 0, COUNT] = 1.0, 3
     accumulator[1, 0, 0, :3], accumulator[1, 0, 0, COUNT] = 5.0, 1
     mean, _, samples = estimate(accumulator, independent=False)
-    assert mean[0, 0, 0] == 2.0
+    assert mean[0, 0, 0] == 3.0
     assert samples[0, 0] == 4
 
 
