@@ -40,6 +40,8 @@ from raylab.samplers import ALL_NAMES as SAMPLERS
 @PARAMETERS
 @click.option("-o", "outputs", metavar="FILE", type=click.Path(path_type=Path), multiple=True,
               help="Write .png, .exr or .npz; can be repeated.")  # fmt: skip
+@click.option("--checkpoint", metavar="FILE", type=click.Path(path_type=Path, dir_okay=False),
+              help="Keep what is done in FILE, and go on from it; removed when the picture is written.")  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of sentences.")
 @click.option(
     "--explain", "explained", is_flag=True, help="Say what the compiled kernel contains and what was left out."
@@ -57,6 +59,7 @@ def render_command(
     threads: int | None,
     parameters: tuple[str, ...],
     outputs: tuple[Path, ...],
+    checkpoint: Path | None,
     as_json: bool,
     explained: bool,
     progress: bool | None,
@@ -77,11 +80,13 @@ def render_command(
     with Bar(progress, seconds, relative_error) as bar, own.explained() if own else nullcontext():
         image = raylab.render(
             own.scene if own else loaded, own.function if own else shade, sampler=sampler, spp=spp, seconds=seconds,
-            relative_error=relative_error, seed=seed, threads=threads, progress=bar,
+            relative_error=relative_error, seed=seed, threads=threads, progress=bar, checkpoint=checkpoint,
         )  # fmt: skip
     for path in outputs:
         if lost := picture.write(image, path):
             say(f"warning: {lost}")
+    if checkpoint and image.complete:
+        checkpoint.unlink(missing_ok=True)
     _warn_about(image)
     result = measured(loaded, image, own.name if own else shade, load_seconds)
     if explained:

@@ -7,16 +7,19 @@ seed, pixel, stream and sample number alone; threads and bands change nothing.
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from raylab import samplers
+from raylab.checkpoint import INTERVAL, Checkpoint
 from raylab.errors import UserError
 from raylab.image import Image, estimate, invalid
 from raylab.jit import entry_point
@@ -59,6 +62,7 @@ class _Run:
     kernel: Any = None
     tally: Any = field(default_factory=lambda: np.zeros(TALLIES, np.int64))
     halves: Halves | None = None  # where it stops at an error
+    checkpoint: Checkpoint | None = None
     taken: int = 0  # samples of each stream, complete over the picture
     compile_seconds: float = 0.0
     render_seconds: float = 0.0
@@ -76,6 +80,7 @@ def render(
     threads: int | None = None,
     band_rows: int | None = None,
     progress: Callable[[Progress], None] | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
 ) -> Image:
     """Render `scene` with a slide's shade(), by name or as a function.
 
@@ -88,6 +93,8 @@ def render(
     seed : picture number; the same seed gives the same bits for every number of threads.
     threads : default: all cores. band_rows : rows of a work item, chosen by default.
     progress : called now and then from this thread.
+    checkpoint : a file that keeps what is done, even if the process is killed. Where there is one, the render goes on
+        from it, and ends with the picture that it would have been without the stop, bit by bit.
 
     Returns
     -------
@@ -109,6 +116,8 @@ def render(
         raise UserError(f"threads must be at least 1, got {threads}")
     seed = described.seed if seed is None else seed
     run = _Run(scene, strategy(shade, scene), name, seed, threads, plan)
+    if checkpoint is not None:
+        run.checkpoint = Checkpoint(Path(checkpoint), described, shade, name, seed, plan)
     return _execute(run, band_rows, progress or _silent)
 
 
@@ -126,6 +135,8 @@ def _execute(run: _Run, band_rows: int | None, progress: Callable[[Progress], No
     run.accumulator = new_accumulator(run.plan.streams, camera.width, camera.height)
     if run.plan.relative_error > 0.0:
         run.halves = Halves(run.plan.relative_error, run.sampler == "independent")
+    if run.checkpoint:
+        _resume(run, run.checkpoint)
     start = time.perf_counter()
     _compile(run)
     run.compile_seconds = time.perf_counter() - start
@@ -134,6 +145,8 @@ def _execute(run: _Run, band_rows: int | None, progress: Callable[[Progress], No
         with ThreadPoolExecutor(run.threads) as pool:
             for first, last in _passes(run):
                 _one_pass(run, pool, first, last, band_rows, progress)
+        if run.checkpoint:
+            _keep(run, run.checkpoint)
     except KeyboardInterrupt:
         complete = False
     if run.halves:
@@ -161,24 +174,57 @@ def _compile(run: _Run) -> None:
 def _passes(run: _Run) -> Iterator[tuple[int, int]]:
     """Ranges of samples that end at powers of two, the last one cut to what the plan allows.
 
-    A pass ends at 1 or at a multiple of LANES, so that which eye rays share a packet does not depend on the clock.
+    A pass ends at 1 or at a multiple of LANES, so that which eye rays share a packet does not depend on the clock; and
+    where it is the noise that ends the render, it is looked at after every power of two, for the same reason.
     """
-    halves = run.halves
     while run.taken < run.plan.samples:
-        last = _first_pass(run)
-        if run.taken > 0:
-            rate = run.taken / run.render_seconds
-            last = max(LANES, 1 << max(run.taken.bit_length(), int(rate * SHORT).bit_length() - 1))
-            if run.plan.seconds < float("inf"):
-                affordable = int((run.plan.seconds - run.render_seconds) * rate)
-                if affordable < 1:
-                    return
-                last = min(last, run.taken + affordable)
-        last = min(last, run.plan.samples)
+        if run.halves and is_power_of_two(run.taken) and run.halves.stop(run.accumulator):
+            return
+        last = _next_end(run) if run.taken > 0 else _first_pass(run)
+        if last <= run.taken:
+            return
         yield run.taken, last
         run.taken = last
-        if halves and halves.stop(run.accumulator):
-            return
+        if run.checkpoint and run.checkpoint.due():
+            _keep(run, run.checkpoint)
+
+
+def _next_end(run: _Run) -> int:
+    """Where the next pass ends: what can be done in a SHORT time, or as much again as is done; less if time is up."""
+    rate = run.taken / run.render_seconds if run.render_seconds > 0.0 else math.inf
+    last = 1 << run.taken.bit_length()
+    if not run.halves and rate < math.inf:
+        last = max(last, 1 << int(rate * SHORT).bit_length() - 1)
+    last = max(LANES, last)
+    if run.checkpoint and rate < math.inf:  # a pass that is killed is lost
+        last = min(last, LANES * max(1, int(run.taken + rate * INTERVAL) // LANES))
+        last = max(last, LANES * (run.taken // LANES + 1))
+    if run.plan.seconds < math.inf:
+        last = min(last, run.taken + max(0, int((run.plan.seconds - run.render_seconds) * rate)))
+    return min(last, run.plan.samples)
+
+
+def is_power_of_two(n: int) -> bool:
+    return n > 0 and n & (n - 1) == 0
+
+
+def _keep(run: _Run, checkpoint: Checkpoint) -> None:
+    """Write what is done."""
+    halves = {f"half{half}": own for half, own in run.halves.kept.items()} if run.halves else {}
+    checkpoint.save(
+        accumulator=run.accumulator, tally=run.tally, taken=run.taken, seconds=run.render_seconds, **halves
+    )  # fmt: skip
+
+
+def _resume(run: _Run, checkpoint: Checkpoint) -> None:
+    """Go on from what was written, if there is something."""
+    kept = checkpoint.load()
+    if not kept:
+        return
+    run.accumulator, run.tally = kept["accumulator"], kept["tally"]
+    run.taken, run.render_seconds = int(kept["taken"]), float(kept["seconds"])
+    if run.halves:
+        run.halves.kept = {half: kept[f"half{half}"] for half in (0, 1) if f"half{half}" in kept}
 
 
 def _first_pass(run: _Run) -> int:

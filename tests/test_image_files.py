@@ -8,8 +8,8 @@ import numpy as np
 import OpenImageIO
 import pytest
 
+from raylab.atomic import replacing
 from raylab.errors import UserError
-from raylab.io.atomic import replacing
 from raylab.io.image_file import decode_srgb, encode_srgb, faulty_texel, read_image, write_exr, write_png
 
 EPS = np.finfo(float).eps

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import raylab
+from raylab.atomic import replacing
 from raylab.demo import pictures
 from raylab.demo.exhibits import EXHIBITS, Change, Exhibit, Experiment, Picture
 from raylab.errors import UserError
 from raylab.image import Image
-from raylab.io.atomic import replacing
 from raylab.progress import StepBar
 from raylab.render import default_threads
 from raylab.scene import Scene

@@ -6,10 +6,10 @@ import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from raylab.atomic import replacing
 from raylab.errors import UserError
 from raylab.figures.gallery import markdown
 from raylab.figures.registry import Figure
-from raylab.io.atomic import replacing
 
 Step = Callable[[int, int, str], None]
 

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import raylab.figures
+from raylab.atomic import replacing
 from raylab.errors import UserError
-from raylab.io.atomic import replacing
 from raylab.slides import TABLE
 
 Draw = Callable[[Path], None]

@@ -25,10 +25,11 @@ from pathlib import Path
 from typing import Any
 
 from raylab import __version__
+from raylab.atomic import replacing
 from raylab.errors import UserError
 from raylab.grading.assignment import Assignment
 from raylab.grading.ranking import column, ranked
-from raylab.io.atomic import replacing
+from raylab.atomic import replacing
 
 Say = Callable[[str], None]
 LONGEST = 900.0  # seconds for one submission, whatever it does

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from raylab.atomic import replacing
 from raylab.errors import UserError
-from raylab.io.atomic import replacing
 from raylab.jit import cache_folder
 
 Array = npt.NDArray[np.float64]

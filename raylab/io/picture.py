@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from raylab.atomic import replacing
 from raylab.errors import UserError
 from raylab.image import Image
-from raylab.io.atomic import replacing
 
 SUFFIXES = (".png", ".exr", ".npz")
 

@@ -7,7 +7,7 @@ import platform
 from collections.abc import Sequence
 from pathlib import Path
 
-from raylab.io.atomic import replacing
+from raylab.atomic import replacing
 from raylab.stress.case import SECTIONS, Row
 
 COMMAND = "raylab stress -o stress --markdown docs/stability.md"

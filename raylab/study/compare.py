@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from raylab.atomic import replacing
 from raylab.errors import UserError
 from raylab.image import Image
-from raylab.io.atomic import replacing
 from raylab.study.look import png
 
 Array = npt.NDArray[np.float64]

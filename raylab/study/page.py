@@ -6,8 +6,8 @@ import platform
 from pathlib import Path
 from typing import Any
 
+from raylab.atomic import replacing
 from raylab.errors import UserError
-from raylab.io.atomic import replacing
 from raylab.study import table
 from raylab.study.look import MINUS, TIMES, data_uri
 from raylab.study.plots import PLOTS, draw

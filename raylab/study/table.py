@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from raylab.io.atomic import replacing
+from raylab.atomic import replacing
 from raylab.study.results import COLUMNS, Study
 
 

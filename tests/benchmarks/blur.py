@@ -1,12 +1,20 @@
-"""What a lens and motion cost: three scenes, plain, through an aperture, and while something moves, in turns.
+"""What a lens and motion cost: scenes plain, through an aperture, and while something moves, in turns.
 
-python tests/benchmarks/blur.py
+    python tests/benchmarks/blur.py [lens|motion]
+
+Each ratio is taken in several fresh processes, since where a process happens to lie in memory changes it by some
+percent: the geometric mean, and in brackets each of them.
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import statistics
+import sys
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +25,8 @@ from raylab import description as d
 from raylab.render import render
 from raylab.scene import Scene
 
-ROUNDS = 25  # short pictures taken in turns: the speed of a shared machine changes within a second
+ROUNDS = 15  # short pictures taken in turns: the speed of a shared machine changes within a second
+PROCESSES = 5
 SPP = 16
 SCENES = Path(__file__).resolve().parents[2] / "reference_scenes"
 
@@ -58,25 +67,63 @@ def ratio(plain: Scene, blurred: Scene) -> float:
     return statistics.median(ratios[1:])
 
 
-def main() -> None:
-    ball = soft_shadow_scene(256)
-    cornell, lens, motion = (
-        raylab.load(SCENES / name / "scene.xml") for name in ("cornell_box", "depth_of_field", "motion_blur")
-    )
-    for name, plain, blurred in (
-        ("its own scene", pinhole(lens), lens),
-        ("the Cornell box", cornell, with_lens(cornell)),
-        ("a ball of 82 k triangles", ball, with_lens(ball)),
-        ("that ball, six blades", ball, with_lens(ball, 6)),
-    ):
-        print(f"depth of field, {name}: {ratio(plain, blurred):.2f} times the pinhole", flush=True)
-    for name, plain, blurred in (
-        ("its own scene", frozen(motion), motion),
-        ("the Cornell box, a box moves", cornell, with_motion(cornell, -2, (20.0, 0.0, 10.0))),
-        ("a ball of 82 k triangles moves", ball, with_motion(ball, 1, (0.2, 0.0, 0.0))),
-    ):
-        print(f"motion blur, {name}: {ratio(plain, blurred):.2f} times the static render", flush=True)
+def lens_scenes() -> dict[str, Callable[[], tuple[Scene, Scene]]]:
+    """Pinhole and lens, by what is said of them."""
+
+    def own() -> tuple[Scene, Scene]:
+        scene = raylab.load(SCENES / "depth_of_field" / "scene.xml")
+        return pinhole(scene), scene
+
+    def cornell() -> tuple[Scene, Scene]:
+        scene = raylab.load(SCENES / "cornell_box" / "scene.xml")
+        return scene, with_lens(scene)
+
+    def ball(blades: int = 0) -> tuple[Scene, Scene]:
+        scene = soft_shadow_scene(256)
+        return scene, with_lens(scene, blades)
+
+    return {
+        "its own scene": own, "the Cornell box": cornell, "a ball of 82 k triangles": ball,
+        "that ball, six blades": partial(ball, 6),
+    }  # fmt: skip
+
+
+def motion_scenes() -> dict[str, Callable[[], tuple[Scene, Scene]]]:
+    """Static and moving."""
+
+    def own() -> tuple[Scene, Scene]:
+        scene = raylab.load(SCENES / "motion_blur" / "scene.xml")
+        return frozen(scene), scene
+
+    def cornell() -> tuple[Scene, Scene]:
+        scene = raylab.load(SCENES / "cornell_box" / "scene.xml")
+        return scene, with_motion(scene, -2, (20.0, 0.0, 10.0))
+
+    def ball() -> tuple[Scene, Scene]:
+        scene = soft_shadow_scene(256)
+        return scene, with_motion(scene, 1, (0.2, 0.0, 0.0))
+
+    return {"its own scene": own, "the Cornell box, a box moves": cornell, "a ball of 82 k triangles moves": ball}
+
+
+KINDS = {
+    "lens": ("depth of field", "the pinhole", lens_scenes), "motion": ("motion blur", "the static render", motion_scenes),
+}  # fmt: skip
+
+
+def measure(kind: str, name: str) -> float:
+    return ratio(*KINDS[kind][2]()[name]())
+
+
+def main(kinds: Sequence[str] = tuple(KINDS)) -> None:
+    for kind in kinds:
+        what, base, scenes = KINDS[kind]
+        for name in scenes():
+            with ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), max_tasks_per_child=1) as fresh:
+                found = list(fresh.map(measure, [kind] * PROCESSES, [name] * PROCESSES))
+            each = ", ".join(f"{one:.2f}" for one in found)
+            print(f"{what}, {name}: {statistics.geometric_mean(found):.3f} times {base} ({each})", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:] or tuple(KINDS))
