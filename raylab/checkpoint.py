@@ -43,9 +43,7 @@ class Checkpoint:
                 kept = {name: file[name] for name in file.files}
             identity = str(kept.pop("identity"))
         except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
-            raise UserError(
-                f"{self.path} cannot be read as a checkpoint ({error}); expected one, or no file"
-            ) from None
+            raise UserError(f"{self.path} cannot be read as a checkpoint ({error}); expected one, or no file") from None
         if identity != self.identity:
             raise UserError(
                 f"{self.path} is the checkpoint of another render (scene, shade, sampler, seed, samples or version "

@@ -180,7 +180,7 @@ def _passes(run: _Run) -> Iterator[tuple[int, int]]:
     while run.taken < run.plan.samples:
         if run.halves and is_power_of_two(run.taken) and run.halves.stop(run.accumulator):
             return
-        last = _next_end(run) if run.taken > 0 else _first_pass(run)
+        last = min(_next_end(run) if run.taken > 0 else _first_pass(run), run.plan.samples)
         if last <= run.taken:
             return
         yield run.taken, last
@@ -192,16 +192,14 @@ def _passes(run: _Run) -> Iterator[tuple[int, int]]:
 def _next_end(run: _Run) -> int:
     """Where the next pass ends: what can be done in a SHORT time, or as much again as is done; less if time is up."""
     rate = run.taken / run.render_seconds if run.render_seconds > 0.0 else math.inf
-    last = 1 << run.taken.bit_length()
-    if not run.halves and rate < math.inf:
-        last = max(last, 1 << int(rate * SHORT).bit_length() - 1)
-    last = max(LANES, last)
+    fast = int(rate * SHORT).bit_length() - 1 if rate < math.inf and not run.halves else 0
+    last = max(LANES, 1 << max(run.taken.bit_length(), fast))
     if run.checkpoint and rate < math.inf:  # a pass that is killed is lost
         last = min(last, LANES * max(1, int(run.taken + rate * INTERVAL) // LANES))
         last = max(last, LANES * (run.taken // LANES + 1))
     if run.plan.seconds < math.inf:
         last = min(last, run.taken + max(0, int((run.plan.seconds - run.render_seconds) * rate)))
-    return min(last, run.plan.samples)
+    return last
 
 
 def is_power_of_two(n: int) -> bool:

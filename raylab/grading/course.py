@@ -29,7 +29,6 @@ from raylab.atomic import replacing
 from raylab.errors import UserError
 from raylab.grading.assignment import Assignment
 from raylab.grading.ranking import column, ranked
-from raylab.atomic import replacing
 
 Say = Callable[[str], None]
 LONGEST = 900.0  # seconds for one submission, whatever it does

@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from raylab import description as d
 from raylab.direct import follow
-from raylab.embree import LANES, _python_ray, new_packet
+from raylab.embree import _python_ray
 from raylab.jit import njit
+from raylab.packet import LANES, new_packet
 from raylab.scene import Scene
 from raylab.shadow import is_blocked, shadow_toward
 from raylab.stress.case import Found, case

@@ -107,7 +107,8 @@ def motion_scenes() -> dict[str, Callable[[], tuple[Scene, Scene]]]:
 
 
 KINDS = {
-    "lens": ("depth of field", "the pinhole", lens_scenes), "motion": ("motion blur", "the static render", motion_scenes),
+    "lens": ("depth of field", "the pinhole", lens_scenes),
+    "motion": ("motion blur", "the static render", motion_scenes),
 }  # fmt: skip
 
 
