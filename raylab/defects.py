@@ -1,6 +1,6 @@
 """Defects: what is wrong with the geometry of a scene, counted, listed, and refused or said in a sentence each.
 
-Refused: what is not finite or beyond 2^300. Left out: triangles without area. Kept, with a warning: slivers, triangles
+Refused: what is not finite or beyond 2^500. Left out: triangles without area. Kept, with a warning: slivers, triangles
 that coincide, detail below 2^-18 of the scene, and a scene so far from the origin that float64 rounds it more than
 float32 will. (Meshes are `MeshArrays` of `raylab.geometry`.)
 """
@@ -21,7 +21,7 @@ Array = npt.NDArray[np.float64]
 SLIVER = 2.0**-12  # twice the area over the square of the longest edge, below which the offset is 1e-3 of that edge
 FINE = 2.0**-18  # of the scene's size: float32 leaves six bits to such an edge, and shadow rays start as far off
 FAR = 2.0**29  # times its size from the origin: there float64 keeps of a scene what float32 does, 24 bits
-RANGE = 2.0**300  # so that products of three lengths neither overflow nor vanish
+RANGE = 2.0**500  # 3e150; so that products of two lengths neither overflow nor vanish
 LISTED = 8
 
 

@@ -132,7 +132,7 @@ def quadric(shape: d.Sphere | d.Disk | d.Cylinder) -> QuadricArrays:
         )
     _, _, basis = np.linalg.svd(axis[None, :])
     across = basis[1:] * shape.radius
-    if np.dot(np.cross(across[0], across[1]), axis) < 0.0:
+    if np.dot(np.cross(basis[1], basis[2]), axis) < 0.0:
         across = across[::-1]
     local[:3, :3] = np.stack([across[0], across[1], axis], axis=1)
     local[:3, 3] = shape.p0
