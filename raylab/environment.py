@@ -130,6 +130,8 @@ class ImageEnvironment(NamedTuple):
 
     def eval(self, w):
         theta, phi = angles(self, w)
+        if math.isnan(theta):  # which no integer can be made of
+            return Vec3(theta, theta, theta)
         return self.texels.eval(theta / PI, phi)
 
     def sample(self, N, u):
@@ -144,6 +146,8 @@ class ImageEnvironment(NamedTuple):
 
     def pdf(self, N, w):
         theta, phi = angles(self, w)
+        if math.isnan(theta):
+            return theta
         x = phi * self.columns - self.texels.offset()
         x = x if x >= 0.0 else x + self.columns
         column = min(int(x), self.columns - 1)
