@@ -34,18 +34,23 @@ def slanted() -> tuple[Any, Any]:
     unit="relative error of the lobe", allowed=1e-13,
 )  # fmt: skip
 def narrow_lobes() -> Found:
-    m = exact()
     r, across = slanted()
-    ours, usual, in_float32, truths = [], [], [], []
-    for n in EXPONENTS:
-        w = r * math.cos(n**-0.5) + across * math.sin(n**-0.5)
-        p, q = ([m.mpf(float(x)) for x in v] for v in (r, w))
-        pq, pp, qq = (sum(a * b for a, b in zip(v, u, strict=True)) for v, u in ((p, q), (p, p), (q, q)))
-        truths.append(m.sqrt(pq * pq / (pp * qq)) ** n)
-        ours.append(cos_power(Vec3(*r), n, Vec3(*w)))
-        usual.append(float(r @ w) ** n)
-        in_float32.append(single(cos_power)(vector(r), np.float32(n), vector(w)))
-    return Found(worst(ours, truths), worst(usual, truths), worst(in_float32, truths))
+    lobes = [(r, n, r * math.cos(n**-0.5) + across * math.sin(n**-0.5)) for n in EXPONENTS]
+    truths = [true_lobe(*lobe) for lobe in lobes]
+    rounded = [(vector(r), np.float32(n), vector(w)) for r, n, w in lobes]
+    return Found(
+        worst([cos_power(Vec3(*r), n, Vec3(*w)) for r, n, w in lobes], truths),
+        worst([float(r @ w) ** n for r, n, w in lobes], truths),
+        worst([single(cos_power)(*lobe) for lobe in rounded], [true_lobe(*lobe) for lobe in rounded]),
+    )
+
+
+def true_lobe(r: Any, n: Any, w: Any) -> Any:
+    """cos^n of the angle between two vectors of about unit length."""
+    m = exact()
+    p, q = ([m.mpf(float(x)) for x in v] for v in (r, w))
+    pq, pp, qq = (sum(a * b for a, b in zip(v, u, strict=True)) for v, u in ((p, q), (p, p), (q, q)))
+    return m.sqrt(pq * pq / (pp * qq)) ** float(n)
 
 
 @case(
