@@ -124,3 +124,24 @@ def test_cases_are_chosen_by_id_and_by_section():
     assert {c.id[0] for c in chosen([])} <= set(SECTIONS)
     with pytest.raises(UserError, match="no case is called 'Z9'; expected an id such as B05"):
         chosen(["Z9"])
+
+
+def test_the_truths_are_the_published_digits():
+    """Solid angle and irradiance of dyadic rectangles, to twenty digits, by another program."""
+    from raylab.stress.oracle import exact, rectangle_solid_angle, relative
+    from raylab.stress.rectangles import lambert
+
+    m = exact()
+    for size, angle, irradiance in (
+        (2.0**-7, "5.4298170187923281146e-5", "5.2222045497173589774e-5"),
+        (2.0**-14, "3.3276881113355829863e-9", "3.2048185549430369061e-9"),
+        (2.0**-27, "4.9587995980210155219e-17", "4.7757545529248356864e-17"),
+    ):
+        corner, e1, e2 = (0.25, 0.125, 1.0), (size, 0.0, 0.0), (0.0, size, 0.0)
+        assert abs(rectangle_solid_angle(corner, e1, e2) / m.mpf(angle) - 1) < 1e-19
+        corners = [(0.25 + s * size, 0.125 + t * size, 1.0) for s, t in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        assert abs(lambert(corners, m.mpf, m) / m.mpf(irradiance) - 1) < 1e-19
+    near = 2 * m.pi - rectangle_solid_angle((-1.0, -1.0, 2.0**-30), (2.0, 0.0, 0.0), (0.0, 2.0, 0.0))
+    assert relative(float(near), m.mpf("5.2683560638617540e-9")) < 1e-16
+    edge_on = rectangle_solid_angle((-1.0, 1.0, 2.0**-20), (2.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    assert abs(edge_on / m.mpf("5.6491770481679206e-7") - 1) < 1e-15
