@@ -10,10 +10,8 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
-from contextlib import redirect_stdout
 from dataclasses import dataclass
 from functools import cache
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -64,7 +62,7 @@ def table(task: str) -> Table:
 
 def diagnosed(right: Right, function: Any, n: int = FOR_MOMENTS) -> list[Diagnosis]:
     """What is said of a function, all of it in plain Python."""
-    with np.errstate(all="ignore"), redirect_stdout(StringIO()):  # some print on the way
+    with np.errstate(all="ignore"):
         source = Interpreted({right.task: function}, {right.task: right.asked})
         return diagnose(table(right.task), source, right.task, n=n)
 

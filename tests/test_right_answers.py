@@ -1,4 +1,4 @@
-"""Right answers, however they are written: the ladder has nothing to say of them, and they get full points.
+"""Right answers, however they are written: the ladder is silent, they get full points, and nobody accuses them.
 
 A right answer is failed with probability at most 1e-6 (`raylab.grading.judge`); there are fewer than a hundred.
 """
@@ -11,8 +11,10 @@ import manners
 import pytest
 
 from raylab.grading.assignment import NAMES, load
+from raylab.grading.diagnosis import diagnose
 from raylab.grading.judge import Judge
 from raylab.grading.source import InProcess
+from raylab.grading.table import Table, path_of
 from raylab.submission.ladder import climb
 
 MANNERS = [(name, rights) for name in NAMES for rights in manners.of_assignment(name)]
@@ -45,8 +47,12 @@ def test_a_right_answer_climbs_in_plain_python(case):
 @pytest.mark.parametrize("case", MANNERS, ids=named)
 def test_a_right_answer_gets_full_points(case):
     assignment = load(case[0])
-    judge = Judge(assignment, InProcess(climbed(case[1], "cross-check")))
+    source = InProcess(climbed(case[1], "cross-check"))
+    judge = Judge(assignment, source)
     judged = [judge.judge(own) for own in assignment.properties]
     score, decided = sum(j.score for j in judged), sum(j.outcome == "PASS" for j in judged)
     print(f"{named(case)}: {score:g} of {assignment.points:g} points, {decided} of {len(judged)} properties decided")
     assert score == assignment.points, [(j.task, j.name, j.seen) for j in judged if j.score < j.points]
+    for task in assignment.tasks:
+        table = Table.read(path_of(assignment.folder, task.id))
+        assert [d.cause for d in diagnose(table, source, task.id)] == [], task.id

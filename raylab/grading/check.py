@@ -36,10 +36,10 @@ def source_of(path: Path, assignment: Assignment) -> bytes:
     return next(iter(taken.files.values()))
 
 
-def in_python(source: bytes, task: Task) -> Any:
-    """The student's function, to be called in plain Python."""
+def in_python(source: bytes, task: Task, silent: bool = False) -> Any:
+    """The student's function, to be called in plain Python; a `silent` one does not print."""
     parsed = read(source)
-    return parsed.namespace(check_shape(parsed, task)[0])[ENTRY]
+    return parsed.namespace(check_shape(parsed, task)[0], silent)[ENTRY]
 
 
 def table_of(assignment: Assignment, task: str) -> Table | None:
@@ -52,7 +52,7 @@ def at_once(assignment: Assignment, source: bytes, task: Task) -> tuple[list[Dia
     table = table_of(assignment, task.id)
     if table is None:
         return [], ""
-    values = table.paired(Interpreted({task.id: in_python(source, task)}, {task.id: task}), task.id)
+    values = table.paired(Interpreted({task.id: in_python(source, task, silent=True)}, {task.id: task}), task.id)
     found = ranked(by_samples(table, values))
     return found, first_different(table, values, task.id) if found and task.kind == "shade" else ""
 

@@ -54,7 +54,7 @@ def nearly(x: Array, y: Array) -> float:
     """The share of inputs that one treats otherwise, if they are few but for those where a result is no number."""
     both = (np.isfinite(x) & np.isfinite(y)).all(axis=2)
     with np.errstate(all="ignore"):
-        typical = np.minimum(*(np.nanmedian(np.abs(v), axis=1, keepdims=True) for v in (x, y)))
+        typical = np.minimum(*(np.median(np.abs(np.nan_to_num(v)), axis=1, keepdims=True) for v in (x, y)))
         off = ((np.abs(x - y) > SAME * (np.abs(y) + 1e-3 * typical)) & (x != y)).any(axis=2)
     if (both & off).mean(axis=1).max() > SPECIAL or both.mean() < 0.3:
         return math.inf
