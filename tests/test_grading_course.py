@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import zipfile
 
+import manners
 import pytest
 
 from raylab.errors import UserError
 from raylab.grading import course
-from raylab.grading.assignment import load
+from raylab.grading.assignment import NAMES, load
 from raylab.grading.copies import likeness
 from raylab.grading.course_wheel import leaking, stage, without
 from raylab.grading.stub import solutions, student_file
@@ -125,6 +127,32 @@ def test_functions_that_hold_the_same_lines_become_stubs_as_well():
     assert {"area_diffuse", "area", "area_solid_angle"} <= set(names)
     assert "env_cosine" not in names
     assert '"""Slide "Area source by Monte Carlo (diffuse)".' in changed
+
+
+@pytest.mark.certify
+@pytest.mark.parametrize("name", NAMES)
+def test_a_right_answer_gets_all_points_and_a_stub_none(name, tmp_path):
+    """Through `raylab grade`: files in, jail, judge, gradebook."""
+    own = load(name)
+    (tmp_path / "stub.py").write_text(student_file(own))
+    (tmp_path / "right.py").write_text(handed_in(own))
+    course.grade_all(own, [tmp_path / "right.py", tmp_path / "stub.py"], tmp_path / "out", 2, print)
+    rows = list(csv.DictReader((tmp_path / "out" / "gradebook.csv").read_text().splitlines()))
+    assert [(r["name"], r["status"], float(r["score"])) for r in rows] == [
+        ("right", "graded", own.points),
+        ("stub", "graded", 0.0),
+    ]
+
+
+def handed_in(assignment):
+    """A right answer to all tasks, out of one file of tests/submissions, under the names that are asked for."""
+    rights = next(rights for rights in manners.of_assignment(assignment.id) if len({r.file for r in rights}) == 1)
+    text = rights[0].text
+    for right in rights:
+        asked = assignment.task(right.task).function
+        text = re.sub(rf"\b{right.name}\b", asked, re.sub(rf"\b{asked}\b", f"{asked}_of_the_lecture", text))
+        text = text.replace(f"{asked}_of_the_lecture,", f"{asked} as {asked}_of_the_lecture,")
+    return text
 
 
 @pytest.mark.certify
