@@ -146,7 +146,7 @@ def indices_out_of_range() -> Found:
 
 @case(
     "A20", "no shape at all; a mesh of no triangles", usual="centre and size of the box (inf, -inf)",
-    rule="centre 0, size 1", truth="nothing is met, the picture is black", unit="scenes that are wrong",
+    rule="centre 0, size 1", truth="nothing is met, the picture is black", unit="scenes that are wrong", limit=60.0,
 )  # fmt: skip
 def empty_scenes() -> Found:
     eye = little_scene(1.0, 0.0).description.camera

@@ -63,7 +63,7 @@ def invalid_rays() -> Array:
 @case(
     "A12", "NaN or infinity in origin, direction, tnear or tfar; 81920 triangles",
     usual="handed to Embree; occluded if tfar < 0 afterwards", rule="not traced, counted, lets no light through",
-    truth="each is counted once, and none takes 5 us", unit="rays not counted, found, or slow",
+    truth="each is counted once, and none takes 5 us", unit="rays not counted, found, or slow", limit=60.0,
 )  # fmt: skip
 def not_numbers() -> Found:
     vertices, faces = ball(6)
@@ -184,7 +184,7 @@ def alignment() -> Found:
 @case(
     "A24", "arrays given to the tracer; geometry changed after the first ray", usual="embreex",
     rule="arrays are copied, a scene is what it was made of", truth="nothing is overwritten, nothing half-changed",
-    unit="arrays overwritten + changes neither seen nor refused",
+    unit="arrays overwritten + changes neither seen nor refused", limit=60.0,
 )  # fmt: skip
 def arrays_of_the_caller() -> Found:
     vertices, faces = ball(2)

@@ -49,7 +49,7 @@ def standing(time: float) -> Scene:
 @case(
     "E06", "shutter that opens and closes at 0.1", usual="(1 - u) t0 + u t1",
     rule="t0 + u (t1 - t0), and nothing moves", truth="the still picture, and 0.1 for every u",
-    unit="values that differ",
+    unit="values that differ", limit=60.0,
 )  # fmt: skip
 def frozen_shutter() -> Found:
     numbers = [k / 1000 for k in range(1000)]
@@ -69,7 +69,7 @@ def reversed_shutter() -> Found:
 
 @case(
     "E08", "times before the first and after the last keyframe", usual="a + t (b - a)", rule="the end's own pose",
-    truth="the first or last keyframe, bit for bit", unit="poses and pictures that differ",
+    truth="the first or last keyframe, bit for bit", unit="poses and pictures that differ", limit=60.0,
 )  # fmt: skip
 def beyond_the_keyframes() -> Found:
     motion = sliding(0.0, 0.0).description.shapes[1].motion

@@ -43,7 +43,10 @@ def up_from_the_floor() -> Found:
     return Found(sum(ours), float(trace(handle, o, up, 0.0, math.inf)[0] >= 0))
 
 
-@case("A02", "a rotated triangle of size 1 at the origin", usual=USUAL, rule=RULE, truth=NOTHING, unit="false hits")
+@case(
+    "A02", "a rotated triangle of size 1 at the origin", usual=USUAL, rule=RULE, truth=NOTHING, unit="false hits",
+    limit=60.0,
+)  # fmt: skip
 def one_triangle() -> Found:
     return compared([triangle()], 5 * COUNT)
 
@@ -79,7 +82,7 @@ def slivers() -> Found:
 )  # fmt: skip
 def slivers_everywhere() -> Found:
     places = [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 1e4), (1e-3, 1e3)]
-    return compared([triangle(a, *place) for a in SLIVERS for place in places], 10_000_000 // 30)
+    return compared([triangle(a, *place) for a in SLIVERS for place in places], 10_000_000 // 30 + 1)
 
 
 @case(

@@ -92,7 +92,7 @@ def random_pairs(seed: int, count: int = COUNT) -> tuple[Array, Array]:
 
 @case(
     "A04", "scene times 1e-6, a plate over the whole floor 1e-3 of the scene's size above it", usual=USUAL, rule=RULE,
-    truth="all rays are blocked", unit="rays that pass through the plate",
+    truth="all rays are blocked", unit="rays that pass through the plate", limit=60.0,
 )  # fmt: skip
 def closed_at_a_small_scale() -> Found:
     scene = floor_and_light(placed(1e-6, angle=0.7), (0.0, 1e-3, 2.0))
