@@ -42,6 +42,7 @@ from raylab.samplers import ALL_NAMES as SAMPLERS
               help="Write .png, .exr or .npz; can be repeated.")  # fmt: skip
 @click.option("--checkpoint", metavar="FILE", type=click.Path(path_type=Path, dir_okay=False),
               help="Keep what is done in FILE, and go on from it; removed when the picture is written.")  # fmt: skip
+@click.option("--strict", is_flag=True, help="Stop at the first sample that is not finite, and say which it is.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object instead of sentences.")
 @click.option(
     "--explain", "explained", is_flag=True, help="Say what the compiled kernel contains and what was left out."
@@ -60,6 +61,7 @@ def render_command(
     parameters: tuple[str, ...],
     outputs: tuple[Path, ...],
     checkpoint: Path | None,
+    strict: bool,
     as_json: bool,
     explained: bool,
     progress: bool | None,
@@ -81,6 +83,7 @@ def render_command(
         image = raylab.render(
             own.scene if own else loaded, own.function if own else shade, sampler=sampler, spp=spp, seconds=seconds,
             relative_error=relative_error, seed=seed, threads=threads, progress=bar, checkpoint=checkpoint,
+            strict=strict,
         )  # fmt: skip
     for path in outputs:
         if lost := picture.write(image, path):
@@ -109,13 +112,16 @@ def _prepare_png() -> None:
 
 
 def _warn_about(image: Image) -> None:
-    if image.invalid_samples:
-        say(f"warning: {image.invalid_samples} samples were not finite; they are left out, which may hide a bias.")
-    if image.invalid_rays:
-        say(f"warning: {image.invalid_rays} rays were not finite and let no light through.")
-    if not image.complete:
-        done = int(image.samples.min()), int(image.samples.max())
-        say(f"stopped by Ctrl-C; what is done is kept: {done[0]} to {done[1]} samples in each pixel.")
+    """Say what was left out, and how far off the picture can be by it."""
+    said = {
+        "invalid_samples": "samples were not finite and are left out",
+        "invalid_rays": "rays were not finite and let no light through",
+        "degenerate_samples": "points of lights were seen edge-on, up to rounding, and count as in shadow",
+    }
+    for name, words in said.items():
+        if count := getattr(image, name):
+            bound = 100.0 * image.bias_bounds[name]
+            say(f"warning: {count} {words}: the picture is off by at most {bound:.2g} % of the brightest sample.")
 
 
 def _summary(result: dict[str, Any], outputs: tuple[Path, ...]) -> str:

@@ -51,7 +51,19 @@ def check_command(name: str, path: Path | None, hint: int, seed: str | None) -> 
 @FILE
 @click.option("--debug", is_flag=True, help="Stop in the debugger at the first line.")
 def replay_command(token: str, path: Path | None, debug: bool) -> None:
-    """Run one sample, named by TOKEN, in plain Python, line by line."""
+    """Run one sample, named by TOKEN, in plain Python: of a task, line by line; of a picture (FILE is its scene)."""
+    if "/" in token:
+        from raylab import load
+        from raylab.pixel_sample import PixelSample
+
+        sample, scene = PixelSample.parse(token), load(found(path, ".", "scene.xml"))
+        if debug:
+            import pdb
+
+            pdb.Pdb().runcall(sample.value, scene, None, click.echo)
+        else:
+            sample.value(scene, None, click.echo)
+        return
     from raylab.grading.replay import parse, replay
 
     assignment = parse(token)[0]

@@ -9,3 +9,7 @@ class UserError(ValueError):
 
 class SceneError(UserError):
     """A scene file or a scene built in Python that cannot be used."""
+
+
+class InvalidSampleError(UserError):
+    """A sample of a picture is not finite, and the render is strict."""

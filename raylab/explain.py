@@ -99,6 +99,8 @@ def measured(scene: Scene, image: Any, shade: str, load_seconds: float) -> dict[
         "rays": report["rays"],
         "invalid_samples": image.invalid_samples,
         "invalid_rays": image.invalid_rays,
+        "degenerate_samples": image.degenerate_samples,
+        "bias_bounds": image.bias_bounds,
         "complete": image.complete,
         "warnings": list(scene.warnings),
         "left_out": left_out(scene),

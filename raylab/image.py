@@ -23,6 +23,7 @@ class Image:
     samples : (h, w) samples in each pixel, invalid ones not counted.
     invalid_samples : how many samples were not finite and left out; each may hide a bias.
     invalid_rays : how many rays were not traced because they were not finite; they let no light through.
+    degenerate_samples : how many points of lights were seen edge-on, up to rounding, and taken to be in shadow.
     """
 
     mean: Array
@@ -30,6 +31,7 @@ class Image:
     samples: Array
     invalid_samples: int = 0
     invalid_rays: int = 0
+    degenerate_samples: int = 0
     complete: bool = True
     report: dict[str, Any] = field(default_factory=dict)
 
@@ -43,6 +45,17 @@ class Image:
         """(3,): of `image_mean`; pixels are independent, so their variances add."""
         variance = self.standard_error**2
         return np.asarray(np.sqrt(variance.sum(axis=(0, 1))) / variance[..., 0].size)
+
+    @property
+    def bias_bounds(self) -> dict[str, float]:
+        """Of each kind of loss, the share of the samples that it can have touched: the picture is off by at most that
+        share of the brightest sample there can be."""
+        taken = float(np.sum(self.samples)) + self.invalid_samples
+        lost = {
+            "invalid_samples": self.invalid_samples, "invalid_rays": self.invalid_rays,
+            "degenerate_samples": self.degenerate_samples,
+        }  # fmt: skip
+        return {name: min(1.0, count / taken) if taken else 0.0 for name, count in lost.items()}
 
     @property
     def relative_error(self) -> float:

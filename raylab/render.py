@@ -25,12 +25,13 @@ from raylab.image import Image, estimate, invalid
 from raylab.jit import entry_point
 from raylab.motion import own_copy
 from raylab.packet import LANES, new_packet
+from raylab.pixel_sample import first_invalid
 from raylab.pixels import COUNT, cached_accumulate, fresh_accumulate, new_accumulator, view
 from raylab.plan import MAX_SAMPLES, Plan
 from raylab.scene import Scene
 from raylab.stopping import Halves
 from raylab.strategies import strategy
-from raylab.surface import INVALID_RAYS, SHADOW_RAYS, TALLIES
+from raylab.surface import DEGENERATE_SAMPLES, INVALID_RAYS, SHADOW_RAYS, TALLIES
 from raylab.view import View
 
 SHORT = 0.5  # seconds: what can be done in this time is one pass
@@ -58,6 +59,8 @@ class _Run:
     seed: int
     threads: int
     plan: Plan
+    strict: bool = False
+    name: str = ""  # of the strategy
     accumulator: Any = None
     kernel: Any = None
     tally: Any = field(default_factory=lambda: np.zeros(TALLIES, np.int64))
@@ -66,6 +69,17 @@ class _Run:
     taken: int = 0  # samples of each stream, complete over the picture
     compile_seconds: float = 0.0
     render_seconds: float = 0.0
+
+    @property
+    def cells(self) -> int:
+        """Of a stratified sampler: the samples of a stream, where they are known beforehand."""
+        return self.plan.samples if self.plan.samples < MAX_SAMPLES else 16
+
+    def band(self, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[int, Any]:
+        """Take some samples of some rows; how many rows, and what was counted."""
+        tally = np.zeros(TALLIES, np.int64)
+        self.kernel(*_arguments(self, tally, rows, samples))
+        return rows[1] - rows[0], tally
 
 
 def render(
@@ -81,6 +95,7 @@ def render(
     band_rows: int | None = None,
     progress: Callable[[Progress], None] | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
+    strict: bool = False,
 ) -> Image:
     """Render `scene` with a slide's shade(), by name or as a function.
 
@@ -95,6 +110,7 @@ def render(
     progress : called now and then from this thread.
     checkpoint : a file that keeps what is done, even if the process is killed. Where there is one, the render goes on
         from it, and ends with the picture that it would have been without the stop, bit by bit.
+    strict : raise for the first sample that is not finite, instead of leaving it out and counting it.
 
     Returns
     -------
@@ -103,6 +119,7 @@ def render(
     Raises
     ------
     UserError : an argument that cannot be used.
+    InvalidSampleError : in strict mode, with the sample: `raylab replay` shows it.
     """
     described = scene.description
     name = sampler or described.sampler
@@ -115,7 +132,8 @@ def render(
     if threads < 1:
         raise UserError(f"threads must be at least 1, got {threads}")
     seed = described.seed if seed is None else seed
-    run = _Run(scene, strategy(shade, scene), name, seed, threads, plan)
+    run = _Run(scene, strategy(shade, scene), name, seed, threads, plan, strict)
+    run.name = shade if isinstance(shade, str) else getattr(shade, "__name__", "shade")
     if checkpoint is not None:
         run.checkpoint = Checkpoint(Path(checkpoint), described, shade, name, seed, plan)
     return _execute(run, band_rows, progress or _silent)
@@ -156,8 +174,7 @@ def _execute(run: _Run, band_rows: int | None, progress: Callable[[Progress], No
 
 def _arguments(run: _Run, tally: Any, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[Any, ...]:
     camera = run.scene.description.camera
-    cells = run.plan.samples if run.plan.samples < MAX_SAMPLES else 16
-    sampler = samplers.make(run.sampler, run.seed, cells)
+    sampler = samplers.make(run.sampler, run.seed, run.cells)
     data = own_copy(run.scene.data._replace(tally=View(tally)))
     pixels = view(run.accumulator)
     return (
@@ -184,6 +201,8 @@ def _passes(run: _Run) -> Iterator[tuple[int, int]]:
         if last <= run.taken:
             return
         yield run.taken, last
+        if run.strict and invalid(run.accumulator):
+            raise first_invalid(run, (run.taken, last))
         run.taken = last
         if run.checkpoint and run.checkpoint.due():
             _keep(run, run.checkpoint)
@@ -259,7 +278,7 @@ def _one_pass(
     try:
         for top in range(0, camera.height, rows):
             bottom = min(top + rows, camera.height)
-            waiting.add(pool.submit(_band, run, (top, bottom), (first, last)))
+            waiting.add(pool.submit(run.band, (top, bottom), (first, last)))
         while waiting:
             done, waiting = wait(waiting, timeout=0.1, return_when=FIRST_COMPLETED)
             for future in done:
@@ -280,12 +299,6 @@ def _one_pass(
         raise
 
 
-def _band(run: _Run, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[int, Any]:
-    tally = np.zeros(TALLIES, np.int64)
-    run.kernel(*_arguments(run, tally, rows, samples))
-    return rows[1] - rows[0], tally
-
-
 def _image(run: _Run, complete: bool) -> Image:
     mean, error, counts = estimate(run.accumulator, run.sampler == "independent")
     taken = int(run.accumulator[..., COUNT].sum()) + invalid(run.accumulator)
@@ -297,4 +310,7 @@ def _image(run: _Run, complete: bool) -> Image:
         "seconds": {"compile": run.compile_seconds, "render": run.render_seconds},
         "rays": {"camera": taken, "shadow": int(run.tally[SHADOW_RAYS])},
     }
-    return Image(mean, error, counts, invalid(run.accumulator), int(run.tally[INVALID_RAYS]), complete, report)
+    return Image(
+        mean, error, counts, invalid(run.accumulator), int(run.tally[INVALID_RAYS]),
+        int(run.tally[DEGENERATE_SAMPLES]), complete, report,
+    )  # fmt: skip

@@ -10,16 +10,22 @@ import math
 
 from raylab.embree import blocked
 from raylab.jit import njit
-from raylab.surface import INVALID_RAYS, SHADOW_RAYS, direction32, is_valid_ray, round32
+from raylab.surface import DEGENERATE_SAMPLES, INVALID_RAYS, SHADOW_RAYS, direction32, is_valid_ray, round32
 from raylab.vec3 import absolute, dot
 
 
 @njit
 def shadow(scene, x, y):
-    """True when something stands between the points x and y (slide: shadow(x, y))."""
+    """True when something stands between the points x and y (slide: shadow(x, y)).
+
+    Where x is in the plane of the light, up to rounding, no light can be told from no light: counted, and in shadow.
+    """
     d = y - x
     reach = y.slack + dot(y.tilt, absolute(d))
-    if dot(x.n, d) <= 0.0 or -dot(y.n, d) < reach:
+    facing = -dot(y.n, d)
+    if dot(x.n, d) <= 0.0 or facing < reach:
+        if facing >= 0.0 and dot(x.n, d) > 0.0:
+            scene.tally[DEGENERATE_SAMPLES] += 1
         return True
     origin = round32(x.p + x.n * x.slack)
     return is_blocked(scene, origin, round32(y.p + y.n * reach - origin), 1.0)

@@ -18,7 +18,7 @@ from raylab.view import View
 # Columns of SceneData.shapes.
 FIRST_FACE, FIRST_VERTEX, FRONT, BACK, LIGHT, SMOOTH, HAS_UV, SHAPE_COLUMNS = range(8)
 # What SceneData.tally counts, per thread.
-SHADOW_RAYS, INVALID_RAYS, TALLIES = range(3)
+SHADOW_RAYS, INVALID_RAYS, DEGENERATE_SAMPLES, TALLIES = range(4)
 
 
 @record

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,15 +13,19 @@ from scenes import GREY, camera, lamp, moved, outdoors, room
 from scipy import stats
 
 from raylab import description as d
-from raylab.errors import UserError
+from raylab.errors import InvalidSampleError, UserError
 from raylab.image import estimate
 from raylab.packet import LANES
+from raylab.pixel_sample import PixelSample
 from raylab.pixels import COLUMNS, COUNT
 from raylab.plan import STREAMS
+from raylab.point import facet_point, free_point
 from raylab.render import render
 from raylab.scene import Scene
+from raylab.shadow import shadow
 from raylab.strategies import strategy
-from raylab.vec3 import Vec3
+from raylab.surface import DEGENERATE_SAMPLES
+from raylab.vec3 import Vec3, black, is_finite
 
 render_module = sys.modules["raylab.render"]  # raylab.render is the function
 
@@ -154,6 +160,42 @@ def test_invalid_samples_are_counted_and_left_out():
     low, high = stats.binom.interval(1 - 1e-6, total, 0.25)
     assert low <= image.invalid_samples <= high
     np.testing.assert_array_equal(image.mean, 1.0)
+
+
+def test_a_strict_render_says_which_sample_is_not_finite():
+    """The same sample in plain Python is the one: with its random numbers, its predecessors are finite."""
+
+    def shade(x, V, brdf, N, scene, rng):
+        return Vec3(math.nan if rng.number() < 0.01 else 1.0, 1.0, 1.0)
+
+    scene = Scene(d.SceneDescription(camera=camera(8), shapes=(d.Rectangle(to_world=moved(0, 0, 0, 99, 99, 1)),)))
+    with pytest.raises(
+        InvalidSampleError, match=r"not finite: pixel \(\d, \d\), stream \d, sample \d+, seed 7"
+    ) as told:
+        render(scene, shade, sampler="sobol", spp=64, seed=7, strict=True)
+    sample = PixelSample.parse(re.search(r"raylab replay (\S+)", str(told.value))[1])
+    assert not is_finite(sample.value(scene, shade))
+    before = [replace(sample, sample=k).value(scene, shade) for k in range(sample.sample)]
+    assert all(map(is_finite, before))
+
+
+@pytest.mark.parametrize("token", ["area", "area/sobol/16/5/3/4/0", "area/sobol/16/5/3/x/0/7", ""])
+def test_a_token_of_another_form_is_refused(token):
+    with pytest.raises(UserError, match="expected a token SHADE/SAMPLER/CELLS/SEED"):
+        PixelSample.parse(token)
+
+
+def test_a_lamp_seen_edge_on_is_counted():
+    """From a wall that faces the lamp, at the height of its plane; above it there is light, below it only its back."""
+    flat = d.Rectangle(to_world=moved(0.5, 0, 0, 0.25, 0.25, 1), radiance=np.ones(3), front=None)
+    scene = Scene(d.SceneDescription(camera=camera(4), shapes=(flat, d.Rectangle(to_world=moved(0, 0, -9)))))
+    data = scene.data
+    y, _ = next(iter(data.lights)).sample(free_point(black), (0.5, 0.5))
+    for height, counted in ((0.0, 1), (0.1, 0), (-0.1, 0)):
+        data.tally[DEGENERATE_SAMPLES] = 0
+        x = facet_point(y.p + Vec3(-0.1, 0.0, height), Vec3(1.0, 0.0, 0.0), 0.0, black)
+        assert shadow(data, x, y) == (height <= 0.0)
+        assert data.tally[DEGENERATE_SAMPLES] == counted
 
 
 def test_seconds_are_kept():

@@ -58,7 +58,8 @@ def write(image: Image, path: Path) -> str:
 
 def report_json(image: Image) -> str:
     """How the picture was made, as one JSON object; what is not a number is null."""
-    counts = {"invalid_samples": image.invalid_samples, "invalid_rays": image.invalid_rays, "complete": image.complete}
+    names = ("invalid_samples", "invalid_rays", "degenerate_samples", "bias_bounds", "complete")
+    counts = {name: getattr(image, name) for name in names}
     return json.dumps(plain({**image.report, **counts}), allow_nan=False)
 
 
