@@ -122,6 +122,9 @@ def _warn_about(image: Image) -> None:
         if count := getattr(image, name):
             bound = 100.0 * image.bias_bounds[name]
             say(f"warning: {count} {words}: the picture is off by at most {bound:.2g} % of the brightest sample.")
+    if not image.complete:
+        done = int(image.samples.min()), int(image.samples.max())
+        say(f"stopped by Ctrl-C; what is done is kept: {done[0]} to {done[1]} samples in each pixel.")
 
 
 def _summary(result: dict[str, Any], outputs: tuple[Path, ...]) -> str:

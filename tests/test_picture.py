@@ -39,7 +39,10 @@ def test_npz_holds_everything_exactly(image, tmp_path):
         for name in ("mean", "standard_error", "samples"):
             np.testing.assert_array_equal(arrays[name], getattr(image, name))
         report = json.loads(str(arrays["report"]))
-    assert report == {**image.report, "invalid_samples": 3, "invalid_rays": 0, "complete": False}
+    counts = {"invalid_samples": 3, "invalid_rays": 0, "degenerate_samples": 0, "complete": False}
+    share = 3.0 / (5 * 4 * 16 + 3)
+    bounds = {"invalid_samples": share, "invalid_rays": 0.0, "degenerate_samples": 0.0}
+    assert report == {**image.report, **counts, "bias_bounds": bounds}
 
 
 def test_exr_has_named_channels(image, tmp_path):
