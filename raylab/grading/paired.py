@@ -54,11 +54,17 @@ def nearly(x: Array, y: Array) -> float:
     """The share of inputs that one treats otherwise, if they are few but for those where a result is no number."""
     both = (np.isfinite(x) & np.isfinite(y)).all(axis=2)
     with np.errstate(all="ignore"):
-        typical = np.minimum(*(np.median(np.abs(np.nan_to_num(v)), axis=1, keepdims=True) for v in (x, y)))
-        off = ((np.abs(x - y) > SAME * (np.abs(y) + 1e-3 * typical)) & (x != y)).any(axis=2)
+        size = np.abs(y) + 1e-3 * np.minimum(typical(x), typical(y))
+        off = ((np.abs(x - y) > SAME * size) & (x != y)).any(axis=2)
     if (both & off).mean(axis=1).max() > SPECIAL or both.mean() < 0.3:
         return math.inf
     return float((off | (np.isfinite(x).all(axis=2) != np.isfinite(y).all(axis=2))).mean())
+
+
+def typical(x: Array) -> Array:
+    """The median size of the numbers of each trial, (trials, 1, 1); 0 where there are none."""
+    sizes = (np.abs(trial[np.isfinite(trial)]) for trial in x)
+    return np.array([np.median(s) if s.size else 0.0 for s in sizes])[:, None, None]
 
 
 def agree(x: Array, y: Array) -> bool:
