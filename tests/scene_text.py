@@ -60,3 +60,19 @@ LAMP_OVER_FLOOR = """<scene version="3.0.0">
 </shape>
 </scene>
 """
+
+# A wall light [-1, 1] x [0, 2] that stands on a floor; the picture of 8 x 8 pixels is of the floor [0, 1/2] x
+# [-1/4, 1/4] in front of it, fov = 2 atan(1 / 32): the light's foot is in the pixels of the first column.
+LAMP_ON_FLOOR = """<scene version="3.0.0">
+<integrator type="direct"/>
+<sensor type="perspective">
+  <float name="fov" value="3.5798"/>
+  <transform name="to_world"><lookat origin="0.25,0,8" target="0.25,0,0" up="0,1,0"/></transform>
+  <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/><rfilter type="box"/></film>
+</sensor>
+<shape type="rectangle"><transform name="to_world"><scale value="4"/></transform></shape>
+<shape type="rectangle">
+  <transform name="to_world"><matrix value="0 0 1 0  1 0 0 0  0 1 0 1  0 0 0 1"/></transform>
+  <emitter type="area"><rgb name="radiance" value="1"/></emitter>
+</shape>
+</scene>"""

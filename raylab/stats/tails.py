@@ -9,6 +9,8 @@ import numpy as np
 from raylab.stats.histogram import Array
 
 FEWEST = 1000  # values of which the largest 1 % are ten, and lie in the tail
+SCALES = (2.0**-8, 2.0**-10, 2.0**-12)  # shares of the values in which a power law shows the same index
+STEADY = 1.5  # how much larger the index of the smallest share may be: three standard errors of 64 values
 
 
 def tail_index(values: Array, share: float = 0.01) -> tuple[float, float]:
@@ -44,6 +46,26 @@ def why_not_trusted(values: Array) -> str:
         return ""
     index, error = tail_index(values)
     return f"not trusted: the variance looks infinite (tail index {index:.2f} +- {error:.2f}, which must be above 2)"
+
+
+def infinite_variance(values: Array, bound: float = 0.0) -> str:
+    """Empty, or the sentence that says so: a power law of an index of at most 2, the same on three SCALES.
+
+    A law that is bounded, such as a lobe or a sun that is rarely hit, looks like a power law on one scale or two; the
+    further out, the larger its index gets. 64 values of the smallest share take 2^18 values. Values up to `bound` are
+    known to have a reason; it is the tail beyond that counts.
+    """
+    furthest = max(1, int(SCALES[-1] * np.size(values)))
+    if np.size(values) < 2 * furthest or np.partition(np.ravel(values), -furthest)[-furthest] <= bound:
+        return ""
+    found = [tail_index(values, share) for share in SCALES]
+    if any(math.isinf(index) or index - error > 2.0 for index, error in found) or found[-1][0] > STEADY * found[0][0]:
+        return ""
+    index, error = found[0]
+    return (
+        f"infinite variance: the interval is not trusted (tail index {index:.2f} +- {error:.2f} of "
+        f"{np.size(values)} single samples, which must be above 2)"
+    )
 
 
 def wilson(hits: int, n: int, confidence: float = 0.95) -> tuple[float, float]:

@@ -18,6 +18,7 @@ from raylab.strategies import BUILT_IN, strategy
 from raylab.study import truth as truths
 from raylab.study.results import Estimator, Row, Study
 from raylab.study.truth import Truth
+from raylab.study.watch import watch
 
 LIGHTS = ("area lights", "point lights", "directional lights", "environment")
 REFERENCE = 1 << 20  # spawn key of the reference's seed: no estimator has this number
@@ -55,9 +56,12 @@ def study(
         for e in estimators:
             step(0, 1, f"compiling {e.label}")
             result.compile_seconds[e] = _render(result, e, 1, _seed(seed, REFERENCE, 1, 0)).report["seconds"]["compile"]
+        for e in estimators:
+            step(0, 1, f"watching {e.label}")
+            _watch(result, e)
         result.truth = truth if whole or not (truth and truth.all_light) else None
         if result.truth is None:
-            result.truth = _reference(result, "direct" if whole else estimators[0].shade, step)
+            result.truth = _reference(result, whole, step)
         total, done = sum(levels) * repeats * len(estimators), 0
         for level, n in enumerate(levels):
             done = _measure(result, level, n, done, total, step)
@@ -97,7 +101,7 @@ def _same_light(scene: Scene, estimators: list[Estimator]) -> bool:
 
 def _kinds(estimator: Estimator) -> frozenset[str]:
     needs = BUILT_IN[estimator.shade][1] if isinstance(estimator.shade, str) else ""
-    return frozenset([needs] if needs else LIGHTS)
+    return frozenset(needs.split(" or ") if needs else LIGHTS)
 
 
 def _seed(seed: int, *key: int) -> int:
@@ -112,10 +116,23 @@ def _render(result: Study, estimator: Estimator, spp: int, seed: int) -> Image:
     return image
 
 
-def _reference(result: Study, shade: str | Callable[..., Any], step: Step) -> Truth:
+def _watch(result: Study, e: Estimator) -> bool:
+    """Whether the estimator has a variance; if not, the result knows why."""
+    seeds = _seed(result.seed, REFERENCE, 2, 0), _seed(result.seed, REFERENCE, 2, 1)
+    if e not in result.infinite:
+        result.infinite[e] = watch(result.scene, e.shade, e.sampler, seeds, result.threads)
+    return not result.infinite[e]
+
+
+def _reference(result: Study, whole: bool, step: Step) -> Truth:
+    """A reference by `direct`, if it has a variance, or by the first estimator that has."""
     spp = max(256, 8 * max(result.levels))
     step(0, 1, f"rendering a reference with {spp} samples per pixel")
-    return truths.compute(result.scene, shade, spp, _seed(result.seed, REFERENCE), result.threads)
+    direct = [Estimator("direct", "sobol")] if whole else []
+    candidates = [*direct, *result.estimators]
+    chosen = next((e for e in candidates if _watch(result, e)), candidates[0])
+    result.reference_doubt = result.infinite[chosen]
+    return truths.compute(result.scene, chosen.shade, spp, _seed(result.seed, REFERENCE), result.threads)
 
 
 def _measure(result: Study, level: int, n: int, done: int, total: int, step: Step) -> int:

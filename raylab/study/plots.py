@@ -68,10 +68,10 @@ def efficiency(study: Study, axes: Any) -> None:
         if not np.isfinite(ratio.value):  # the variance of one of the two is zero
             continue
         low, high = max(ratio.low, 1e-2 * ratio.value), min(ratio.high, 1e2 * ratio.value)
-        if place:
+        if place and np.isfinite(ratio.high):
             axes.plot([low, high], [place, place], color=colour, marker="|", markersize=18, markeredgewidth=3)
         axes.plot(ratio.value, place, color=colour, marker=MARKERS[e.sampler], markersize=13)
-        text = f"{readable(ratio.value)}{TIMES}"
+        text = f"{readable(ratio.value)}{TIMES}" + ("" if np.isfinite(ratio.high) else "  (interval not trusted)")
         axes.annotate(text, (ratio.value, place), (0, 14), textcoords="offset points", ha="center", color=colour)
         ends += [low, high] if place else []
     axes.axvline(1.0, color=GREY, linewidth=1.4, linestyle=(0, (6, 4)))
@@ -124,7 +124,10 @@ def _curves(study: Study, axes: Any, point: Point, slope: Callable[[Estimator], 
         if not x:
             continue
         colour, value = colour_of(study, e), [v.value for v in y]
-        axes.fill_between(x, [v.low for v in y], [v.high for v in y], color=colour, alpha=0.18, linewidth=0)
+        known = [np.isfinite(v.high) for v in y]
+        axes.fill_between(
+            x, [v.low for v in y], [v.high for v in y], where=known, color=colour, alpha=0.18, linewidth=0
+        )
         axes.plot(x, value, color=colour, linestyle=LINES[e.sampler], marker=MARKERS[e.sampler])
         fitted = slope(e)
         text = label_of(study, e) + (f"  (slope {_minus(fitted.value)})" if fitted else "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -108,6 +109,8 @@ class Study:
     rows: list[Row] = field(default_factory=list)
     compile_seconds: dict[Estimator, float] = field(default_factory=dict)
     crowding: dict[tuple[Estimator, int], str] = field(default_factory=dict)
+    infinite: dict[Estimator, str] = field(default_factory=dict)  # why it has no variance; empty if it has one
+    reference_doubt: str = ""
     complete: bool = True
 
     @classmethod
@@ -133,6 +136,8 @@ class Study:
         if crowd := self.crowding.get((e, n), ""):
             variance = Estimate(variance.value, variance.low, variance.high, (*variance.doubts, crowd))
             error = Estimate(error.value, error.low, error.high, (*error.doubts, crowd))
+        if infinite := self.infinite.get(e, ""):
+            variance, error = (Estimate(v.value, 0.0, math.inf, (infinite,)) for v in (variance, error))
         return Level(e, n, len(rows), variance, error.map(0.5), st.median_interval(timings), timings)
 
     def variance_slope(self, e: Estimator) -> Slope | None:
@@ -167,7 +172,12 @@ class Study:
     def notes(self) -> list[str]:
         """Everything that a reader must know before trusting a number."""
         notes = [] if self.complete else ["Stopped by Ctrl-C: only what was measured until then is shown."]
+        if self.reference_doubt:
+            notes.append(f"The reference has no known error, and is no truth: {self.reference_doubt}.")
         for e, levels in self.measured.items():
+            if infinite := self.infinite.get(e, ""):
+                notes.append(f"{e.label}: {infinite}.")
+                continue
             doubts: dict[str, list[int]] = {}
             for level in levels:
                 for doubt in dict.fromkeys((*level.variance.doubts, *level.rmse.doubts, *level.seconds.doubts)):
@@ -187,7 +197,7 @@ class Study:
         notes = []
         for e, levels in self.measured.items():
             rows = [row for row in self.rows if levels and row.estimator == e.label and row.spp == levels[-1].spp]
-            if self.truth is None or len(rows) < st.FEW:
+            if self.truth is None or len(rows) < st.FEW or self.infinite.get(e) or self.reference_doubt:
                 continue
             means = np.array([(row.mean_r, row.mean_g, row.mean_b) for row in rows])
             truth, error = self.truth.value, self.truth.standard_error
@@ -207,9 +217,10 @@ class Study:
         lines = [f"Truth: {self.truth.source}." if self.truth else "Nothing was measured."]
         for e in self.estimators if self.common_level else ():
             ratio, level = self.relative_efficiency(e), self._at_common(e)
+            known = f"{ratio.low:.3g} to {ratio.high:.3g}" if math.isfinite(ratio.high) else "interval not trusted"
             lines.append(
                 f"{e.label}: RMSE {level.rmse.value:.3g} at {level.spp} samples in {level.seconds.value:.3g} s; "
-                f"efficiency {ratio.value:.3g} times ({ratio.low:.3g} to {ratio.high:.3g}) that of the first"
+                f"efficiency {ratio.value:.3g} times ({known}) that of the first"
             )
         return "\n".join([*lines, *self.notes()])
 
