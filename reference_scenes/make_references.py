@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 import raylab
-from raylab.io.atomic import replacing
+from raylab.atomic import replacing
 
 sys.path.insert(0, str(Path(__file__).parent))
 import pictures
