@@ -21,23 +21,19 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from planted import STYLES, TASK_OF, corpus, parts, text_of
+from manners import of_task
+from planted import corpus
+
+RIGHTS = of_task("a1.diffuse")
 
 PROMISED_MINUTES, PROMISED_MB = 90.0, 768.0
 
 
 def submissions() -> Iterator[str]:
     """Files with a `shade` for a1: right ones first, then one mistake each, and all over again."""
-    file, styles = STYLES["a1.diffuse"]
-    rows = [(style, ()) for style in styles]
-    rows += [(p.style, p.edits) for p in corpus() if TASK_OF[p.style][0] == "a1.diffuse"]
-    for number, (style, edits) in enumerate(itertools.cycle(rows)):
-        text = text_of(file)
-        start, end = next(parts(text, style))
-        own = text[start:end]
-        for old, new in edits:
-            own = own.replace(old, new)
-        yield f"{text[:start]}{own.replace(f'def {style}(', 'def shade(')}{text[end:]}\n# {number}\n"
+    rows = [(right, ()) for right in RIGHTS] + [(p.right, p.edits) for p in corpus() if p.right.task == "a1.diffuse"]
+    for number, (right, edits) in enumerate(itertools.cycle(rows)):
+        yield f"{right.edited(edits).replace(f'def {right.name}(', 'def shade(')}\n# {number}\n"
 
 
 def memory() -> float:
@@ -75,7 +71,7 @@ def main(count: int = 40) -> None:
         minutes = (time.monotonic() - start) / 60.0
         rows = list(csv.DictReader((folder / "out" / "gradebook.csv").read_text().splitlines()))
     graded = sum(row["status"] == "graded" for row in rows)
-    right = len(STYLES["a1.diffuse"][1])
+    right = len(RIGHTS)
     print(f"{graded} of {count} graded in {minutes:.1f} minutes ({60 * minutes / count:.1f} s each): "
           f"300 take {300 * minutes / count:.0f}, at most {PROMISED_MINUTES:g} are promised")  # fmt: skip
     print(f"memory of one grading: {most:.0f} MB, at most {PROMISED_MB:g} are promised")
