@@ -46,14 +46,12 @@ class AreaLights:
         self.corners: list[Array] = []
         self.shares: list[Array] = []
 
-    def add_mesh(
-        self, shape: d.Shape, kind: str, vertices: npt.NDArray[np.float32], faces: npt.NDArray[np.uint32]
-    ) -> int:
-        """A mesh light over normalised float32 vertices; returns its number."""
-        corners = vertices[faces].astype(np.float64)
+    def add_mesh(self, shape: d.Shape, kind: str, vertices: Array, faces: npt.NDArray[np.uint32]) -> int:
+        """A mesh light over normalised vertices; returns its number."""
+        corners = vertices[faces]
         if kind == "rectangle" and len(faces) == 2:
             v0, v1, v3 = vertices[[0, 1, 3]] if not is_reversed(faces) else vertices[[0, 3, 1]]
-            return self._add_flat(shape, lights.RECTANGLE, np.array([v0, v1, v3], np.float64), 1.0)
+            return self._add_flat(shape, lights.RECTANGLE, np.array([v0, v1, v3]), 1.0)
         if len(faces) == 1:
             return self._add_flat(shape, lights.TRIANGLE, corners[0], 0.5)
         areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)

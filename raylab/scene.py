@@ -2,7 +2,8 @@
 
 Kernels work in normalised coordinates: the centre of all content at the origin, and scaled by a power of two so that
 everything lies within [-1, 1]. Then the rounding of Embree's float32 does not depend on where a scene stands and in
-what unit it was drawn; scaling by a power of two changes no bit of the picture. Radiance has no length in it; the
+what unit it was drawn; scaling by a power of two changes no bit of the picture. What Embree does not need, the planes
+of triangles and the corners of lights, is not rounded to float32. Radiance has no length in it; the
 intensity of a point light, W/sr, is scaled with the square.
 """
 
@@ -105,21 +106,22 @@ class _Builder:
         return vertices
 
     def _planes(self) -> npt.NDArray[np.float64]:
-        """The plane table of all faces, some at a time to bound the memory."""
-        planes, first_face, first_vertex = np.zeros((len(self.faces), 8)), 0, 0
+        """The plane table of all faces, in float64, some at a time to bound the memory."""
+        planes, first = np.zeros((len(self.faces), 8)), 0
         for m in self.meshes:
-            own = self.vertices[first_vertex : first_vertex + len(m.vertices)]
+            own = self.placement.points(m.vertices)
             for start in range(0, len(m.faces), CHUNK):
                 some = m.faces[start : start + CHUNK]
-                planes[first_face + start : first_face + start + len(some)] = plane_table(own[some].astype(np.float64))
-            first_face, first_vertex = first_face + len(m.faces), first_vertex + len(m.vertices)
+                planes[first + start : first + start + len(some)] = plane_table(own[some])
+            first += len(m.faces)
         return planes
 
     def _shapes(self) -> npt.NDArray[np.int64]:
         table, first_face, first_vertex = [], 0, 0
         for m in self.meshes:
-            own = self.vertices[first_vertex : first_vertex + len(m.vertices)]
-            light = -1 if m.shape.radiance is None else self.area_lights.add_mesh(m.shape, m.kind, own, m.faces)
+            light = -1
+            if m.shape.radiance is not None:
+                light = self.area_lights.add_mesh(m.shape, m.kind, self.placement.points(m.vertices), m.faces)
             smooth, has_uv = int(m.normals is not None), int(m.uv is not None)
             table.append([first_face, first_vertex, *self._sides(m.shape), light, smooth, has_uv])
             first_face, first_vertex = first_face + len(m.faces), first_vertex + len(m.vertices)

@@ -22,7 +22,7 @@ from raylab.scene import Scene
 from raylab.stress.case import Found, case
 from raylab.stress.leaving import GREY, mesh
 from raylab.stress.odd_rays import ball
-from raylab.stress.shadow_rays import little_scene
+from raylab.stress.small_pictures import little_scene
 from raylab.stress.usual_tracer import UsualTracer, usual_hit
 from raylab.surface import intersect, round32
 from raylab.vec3 import vec3_at

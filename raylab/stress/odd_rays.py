@@ -19,7 +19,7 @@ from raylab.scene import Scene
 from raylab.shadow import is_blocked, shadow_toward
 from raylab.stress.case import Found, case
 from raylab.stress.leaving import GREY, mesh
-from raylab.stress.shadow_rays import little_scene, picture
+from raylab.stress.small_pictures import little_scene, picture
 from raylab.stress.usual_tracer import UsualTracer, trace_all, usual_hit
 from raylab.surface import INVALID_RAYS, intersect
 from raylab.vec3 import Vec3, vec3_at

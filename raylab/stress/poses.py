@@ -22,7 +22,7 @@ from raylab.stress.leaving import placed
 from raylab.stress.meshes import refused
 from raylab.stress.odd_rays import ball
 from raylab.stress.oracle import exact
-from raylab.stress.shadow_rays import little_scene, picture
+from raylab.stress.small_pictures import little_scene, picture
 
 Array = npt.NDArray[Any]
 

@@ -7,6 +7,7 @@ import importlib
 MODULES = (
     "self_shadows",
     "shadow_rays",
+    "small_pictures",
     "odd_rays",
     "meshes",
     "watertight",
