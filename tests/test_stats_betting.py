@@ -153,3 +153,11 @@ def test_capital_against_an_impossible_mean_is_not_made():
 def test_a_claim_that_makes_no_sense_is_refused(change, message):
     with pytest.raises(ValueError, match=message):
         Claim(**({"name": "x", "truth": 1.0, "low": 0.0, "high": 2.0, "delta": 0.01} | change))
+
+
+@pytest.mark.parametrize("delta", [1e-300, 1e-170, 1e-150])
+def test_a_claim_about_next_to_nothing_is_judged(delta):
+    """Black where black is due, however small what is looked for: squares of it are 0."""
+    test = Test(Claim("black", 0.0, -1.0, 1.0, np.float64(delta), alpha=1e-6))
+    test.update(np.zeros(1000))
+    assert test.outcome != "FAIL"

@@ -183,7 +183,8 @@ class Test:
             edges = edges_for(claim.low, claim.high, claim.truth, spread)
             self._all, self._late = Histogram(edges), Histogram(edges)
             self._all.add(pilot)
-            self._gamblers = Gamblers(claim, edges, claim.delta / (spread**2 + claim.delta**2))
+            delta, ratio = float(claim.delta), spread / float(claim.delta)  # of which the squares may be too small
+            self._gamblers = Gamblers(claim, edges, 1.0 / (delta * (1.0 + ratio * ratio)))
         assert self._late is not None
         self._all.add(values)
         self._late.add(values)
