@@ -25,6 +25,7 @@ _SHAPES = {
     lights.SPHERE: ("sphere", lights.SphereShape()),
     lights.CYLINDER: ("cylinder", lights.CylinderShape()),
 }
+_NO_AREA = "shape {!r}: an area light needs an area that is not 0 beside the size of the scene"
 
 
 def colour(value: Any, what: str) -> Array:
@@ -56,7 +57,7 @@ class AreaLights:
             return self._add_flat(shape, lights.TRIANGLE, corners[0], 0.5)
         areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
         if not areas.sum() > 0.0:
-            raise SceneError(f"shape {shape.name!r}: an area light needs at least one triangle")
+            raise SceneError(_NO_AREA.format(shape.name))
         shares = np.cumsum(areas) / areas.sum()
         shares[-1] = 1.0
         first = sum(len(s) for s in self.shares)
@@ -95,6 +96,8 @@ class AreaLights:
         n, slack, tilt = row[:3], row[4], row[5:]
         e1, e2 = corners[1] - corners[0], corners[2] - corners[0]
         area = share * float(np.linalg.norm(np.cross(e1, e2)))
+        if not area > 0.0:
+            raise SceneError(_NO_AREA.format(shape.name))
         return self._add(shape, kind, p=corners[0], e1=e1, e2=e2, n=n, area=area, slack=slack, tilt=tilt)
 
     def _add(

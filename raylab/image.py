@@ -76,7 +76,7 @@ def estimate(accumulator: Array, independent: bool) -> tuple[Array, Array, Array
     some = (counts > 0)[..., None]
     streams = some.sum(axis=0)
     means = accumulator[..., MEAN : MEAN + 3]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # an error beyond 1e308 is inf
         mean = np.where(some, means, 0.0).sum(axis=0) / streams
         if independent:
             n = counts[..., None]

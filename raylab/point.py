@@ -90,10 +90,12 @@ def triangle_frame(v0, v1, v2):
 def plane_table(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """For triangles (m, 3, 3): unit normal n, n . v0, and the `facet_terms` slack and tilt, (m, 8).
 
-    Eight numbers, one line of the processor's cache, are all that a hit point needs.
+    Eight numbers, one line of the processor's cache, are all that a hit point needs. What is so small that its
+    area is 0 has no normal either.
     """
     n = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    inverse_area = 1.0 / np.linalg.norm(n, axis=1, keepdims=True)
+    double_area = np.linalg.norm(n, axis=1, keepdims=True)
+    inverse_area = np.divide(1.0, double_area, out=np.zeros_like(double_area), where=double_area > 0.0)
     n *= inverse_area
     extents = np.ptp(corners, axis=1)
     c = np.roll(extents, -1, axis=1) * np.roll(extents, -2, axis=1) * (2.0 * inverse_area)

@@ -21,6 +21,7 @@ from raylab.view import View
 
 Array = npt.NDArray[np.float64]
 WIDEST = 1e12  # radius of an aperture over its focus distance: beyond, eye rays have no direction but sideways
+WIDEST_FILTER = 1e9  # pixels
 
 
 def has_lens(camera: d.Camera) -> bool:
@@ -104,8 +105,9 @@ def check_camera(camera: d.Camera) -> None:
     matrix = np.asarray(camera.to_world)
     if matrix.shape != (4, 4) or not np.all(np.isfinite(matrix)) or abs(np.linalg.det(matrix[:3, :3])) < 1e-12:
         raise SceneError(f"camera: to_world must be a finite, invertible (4, 4) matrix, got\n{matrix}")
-    if not (camera.filter.radius > 0.0 and camera.filter.stddev > 0.0):
-        raise SceneError(f"camera: the pixel filter needs a positive radius, got {camera.filter}")
+    if not np.all(np.isfinite(camera.principal_point_offset)):
+        raise SceneError(f"camera: principal_point_offset must be finite, got {camera.principal_point_offset}")
+    check_filter(camera.filter)
     if not 0.0 <= camera.aperture_radius < math.inf:
         raise SceneError(f"camera: aperture_radius must be finite and not negative, got {camera.aperture_radius}")
     if not camera.focus_distance > 0.0:
@@ -119,6 +121,19 @@ def check_camera(camera: d.Camera) -> None:
         raise SceneError(f"camera: aperture_blades must be 0, a disk, or at least 3, got {camera.aperture_blades}")
     if not math.isfinite(camera.aperture_rotation):
         raise SceneError(f"camera: aperture_rotation must be finite, got {camera.aperture_rotation}")
+
+
+def check_filter(described: d.Filter) -> None:
+    if not (0.0 < described.radius <= WIDEST_FILTER and described.stddev > 0.0):
+        raise SceneError(
+            f"camera: the pixel filter needs a positive radius, at most {WIDEST_FILTER:g} pixels, got {described}"
+        )
+    sizes = (described.radius, described.stddev)
+    if described.kind == "gaussian" and not (min(sizes) >= 1.0 / WIDEST_FILTER and max(sizes) <= 1e3 * min(sizes)):
+        raise SceneError(
+            f"camera: radius and stddev of a gaussian must be at least {1.0 / WIDEST_FILTER:g} pixels, and one at most "
+            f"1000 times the other, got {described}"
+        )
 
 
 def half_extents(camera: d.Camera) -> tuple[float, float]:
