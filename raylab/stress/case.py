@@ -20,7 +20,7 @@ U53, U24 = 2.0**-53, 2.0**-24  # the unit roundoff of float64 and of float32
 SECTIONS = {
     "A": "Tracing", "B": "Light sampling, solid angles, the 1/r^2 term", "C": "BRDF, Fresnel, frames",
     "D": "Environment maps", "E": "Camera, lens, time", "F": "Random numbers", "G": "Accumulation and statistics",
-    "H": "Colour and output", "I": "Python and numba",
+    "H": "Colour and output", "I": "Python and numba", "S": "Stiff estimators",
 }  # fmt: skip
 LIMIT = 20.0  # s, compiling included: a ray that is not a number takes Embree a thousand times as long
 

@@ -19,6 +19,7 @@ MODULES = (
     "rectangles",
     "nearness",
     "stiff_lights",
+    "stiff_estimators",
     "choices",
     "lobes",
     "reflection",
