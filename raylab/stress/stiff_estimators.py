@@ -30,7 +30,7 @@ from raylab.scene import Scene
 from raylab.stats.tails import infinite_variance, tail_index
 from raylab.stress.case import Found, case
 from raylab.stress.lamps import UP, Lamp, cap_variance, squares
-from raylab.stress.nearness import WHITE, placed, seen
+from raylab.stress.nearness import FEW, WHITE, placed, seen
 from raylab.stress.oracle import gauss
 
 Array = npt.NDArray[np.float64]
@@ -208,6 +208,34 @@ def _everywhere(n, u, half, whole):
 )  # fmt: skip
 def uniform_hemisphere() -> Found:
     return Found(max(astray(_over(n)[0], 1.0, (n + 1.0) ** 2 / (2.0 * n + 1.0) - 1.0) for n in (100.0, 1000.0)))
+
+
+@case(
+    "S07", "a sky of 32 x 16 texels with a sun of 1e4 : 1 and of 2 : 1, over a diffuse floor",
+    usual="cosine-proportional", rule="by brightness; neither is the better one for both", truth="sums over the texels",
+    unit=UNIT, allowed=4.5, limit=60.0,
+)  # fmt: skip
+def sun_or_not() -> Found:
+    error, told = 0.0, []
+    floor = d.Rectangle(to_world=np.diag([4.0, 4.0, 4.0, 1.0])[[0, 2, 1, 3]] * [[1], [1], [-1], [1]], front=WHITE)
+    cosine = np.cos(np.linspace(0.0, math.pi, 17)).clip(0.0)  # at the ends of the rows
+    size = np.diff(-np.cos(np.linspace(0.0, math.pi, 17)))[:, None] * (math.pi / 16.0)
+    one, two = (-np.diff(cosine**k)[:, None] / k * (math.pi / 16.0) for k in (2, 3))  # of cos and cos^2
+    for sun in (1e4, 2.0):
+        sky = np.ones((16, 32))
+        sky[2, 5] = sun
+        mean = float((sky * one).sum())
+        truths = {
+            "env_cosine": math.pi * float((sky**2 * one).sum()) / mean**2 - 1.0,
+            "env_brightness": float((sky * size).sum() * (sky * two).sum()) / mean**2 - 1.0,
+        }
+        image = d.ImageEnvironment(np.repeat(sky[..., None], 3, axis=2), filter="nearest")
+        scene = Scene(d.SceneDescription(shapes=(floor,), environment=image))
+        for name, truth in truths.items():
+            g = math.pi * seen(scene, name, (0.0, 0.0, 0.0), (0.1, 1.0, 0.2), 4 * FEW)
+            error = max(error, astray(g, mean, truth))
+        told.append(" and ".join(f"{truth:.3g}" for truth in truths.values()))
+    return Found(error, note=f"Relative variances: {'; '.join(told)}")
 
 
 @case(
