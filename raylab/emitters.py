@@ -159,8 +159,11 @@ def sun_table(described: Sequence[d.Light]) -> Table:
     rows = []
     for light in found:
         towards = np.asarray(light.direction, np.float64)
-        size = np.linalg.norm(towards)
-        if towards.shape != (3,) or not (np.isfinite(size) and size > 0.0):
+        if towards.shape != (3,) or not (np.all(np.isfinite(towards)) and towards.any()):
             raise SceneError(f"directional light: direction must be a finite vector, not zero, got {towards.tolist()}")
-        rows.append(np.concatenate([colour(light.irradiance, "directional light: irradiance"), -towards / size]))
+        towards = np.ldexp(
+            towards, -np.frexp(np.abs(towards).max())[1]
+        )  # exact; so that no square overflows or vanishes
+        towards = towards / np.linalg.norm(towards)
+        rows.append(np.concatenate([colour(light.irradiance, "directional light: irradiance"), -towards]))
     return Table(lights.DirectionalLight, np.stack(rows))

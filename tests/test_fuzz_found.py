@@ -44,3 +44,11 @@ def test_a_camera_without_directions_is_refused(eye, words):
     """Each eye ray was NaN."""
     with pytest.raises(SceneError, match=words):
         Scene(d.SceneDescription(camera=eye))
+
+
+@pytest.mark.parametrize("length", [1e200, 1e-200, 5e-324])
+def test_the_direction_of_a_sun_has_any_length(length):
+    """Its square over- or underflowed, and the sun was refused as infinite or as none."""
+    sun = d.DirectionalLight(np.array([0.0, 0.0, -length]), np.ones(3))
+    (found,) = Scene(d.SceneDescription(lights=(sun,))).data.suns
+    assert [*found.w] == [0.0, 0.0, 1.0]
