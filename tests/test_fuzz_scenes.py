@@ -23,8 +23,9 @@ IN_TEST = FAMILIES[:1]  # whose kernel other tests compile as well
 
 
 def fuzz(examples: int):
+    """Few examples are the same ones in every run of `make test`; many are new ones each time."""
     return settings(
-        max_examples=examples, deadline=None, database=None, print_blob=True,
+        max_examples=examples, deadline=None, database=None, print_blob=True, derandomize=examples <= 3 * FEW,
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )  # fmt: skip
 
