@@ -142,7 +142,7 @@ def test_hit_is_recomputed_in_float64():
     """On a tilted triangle the hit lies on its plane to 1e-15, which Embree's own float32 t cannot give."""
     corners = np.array([[-1.0, -1, 0.3], [1, -0.7, -0.2], [0.1, 1, 0.4]])
     scene = Scene(d.SceneDescription(shapes=(d.Mesh(vertices=corners, faces=np.array([[0, 1, 2]])),)))
-    stored = scene.data.vertices.array[:3].astype(np.float64)
+    stored = np.array([scene.placement.points(corner) for corner in corners])
     n = np.cross(stored[1] - stored[0], stored[2] - stored[0])
     n /= np.linalg.norm(n)
     rng = np.random.default_rng(7)

@@ -6,13 +6,12 @@ from mutants.patch import Edit, Mutant
 
 AREA = "shade:area_diffuse"
 COSINES = "max(0.0, dot(L, N)) * max(0.0, dot(-L, y.n))"
-SELF = "if dot(x.n, d) <= 0.0 or -dot(y.n, d) < reach:"
 NO_SELF = (
     Edit("shadow:shadow", "dot(x.n, d) <= 0.0 or ", ""),
     Edit("shadow:shadow", "x.p + x.n * x.slack", "x.p + x.n * (x.slack if dot(x.n, d) > 0.0 else -x.slack)"),
 )
 NO_BACK = (
-    Edit("shadow:shadow", " or -dot(y.n, d) < reach", ""),
+    Edit("shadow:shadow", " or facing < reach", ""),
     Edit(
         "shadow:shadow", "y.p + y.n * reach - origin", "y.p + y.n * (reach if dot(y.n, d) < 0.0 else -reach) - origin"
     ),
