@@ -56,7 +56,8 @@ def fuzz(examples: int):
 @fuzz(FEW)
 @given(data=broken_file)
 def test_a_mutated_file_is_a_description_or_a_sentence(data: bytes, folder: Path) -> None:
-    description(data, folder)
+    described = description(data, folder)
+    assert described is None or isinstance(described, SceneDescription)
 
 
 @pytest.fixture(scope="module")

@@ -62,7 +62,7 @@ def counted(family: Family, examples: int) -> list[bool]:
 
 @pytest.mark.parametrize("family", IN_TEST, ids=lambda family: family.name)
 def test_a_random_scene_is_rendered_or_refused(family: Family) -> None:
-    counted(family, FEW)
+    assert any(counted(family, FEW))
 
 
 @pytest.mark.certify

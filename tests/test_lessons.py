@@ -27,24 +27,24 @@ def examiner():
 
 
 def look(examiner, name, technique):
-    report = examiner.unbiased(technique, trial=name, delta=0.03)
-    assert report.outcome == "PASS", str(report)
+    """What is found of its mean, and of its variance where that is known."""
+    reports = [examiner.unbiased(technique, trial=name, delta=0.03)]
     if trials.make(name, 0).answers[technique].variance is not None:
-        report = examiner.variance(technique, trial=name, tolerance=0.1)
-        assert report.outcome == "PASS", str(report)
+        reports.append(examiner.variance(technique, trial=name, tolerance=0.1))
+    return reports
 
 
 @pytest.mark.xdist_group("lessons")
 @pytest.mark.parametrize(("name", "technique"), SELECTED)
 def test_a_lesson_knows_the_answer(examiner, name, technique):
-    look(examiner, name, technique)
+    assert [str(r) for r in look(examiner, name, technique) if r.outcome != "PASS"] == []
 
 
 @pytest.mark.certify
 @pytest.mark.xdist_group("lessons")
 @pytest.mark.parametrize(("name", "technique"), OTHERS)
 def test_every_lesson_knows_the_answer(examiner, name, technique):
-    look(examiner, name, technique)
+    assert [str(r) for r in look(examiner, name, technique) if r.outcome != "PASS"] == []
 
 
 @pytest.mark.parametrize("family", ["area", "area_glossy", "sky", "sky_glossy", "mix", "mix_glossy"])

@@ -45,9 +45,6 @@ class Claims:
             raise self.claimed
         return self.claimed * n
 
-    def map(self, task, rows):
-        raise NotImplementedError
-
 
 def value(source, judged=PASSED):
     judge = Judge(A1, source, 7)
