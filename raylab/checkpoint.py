@@ -51,9 +51,9 @@ class Checkpoint:
             )
         return kept
 
-    def due(self) -> bool:
-        """Is it time to write again?"""
-        return time.monotonic() - self._written > max(INTERVAL, 10.0 * self._took)
+    def due(self, left: float) -> bool:
+        """Is it time to write again, where `left` seconds are left in all?"""
+        return left > 2.0 * self._took and time.monotonic() - self._written > max(INTERVAL, 10.0 * self._took)
 
     def save(self, **kept: Any) -> None:
         """Replace the file in one step."""

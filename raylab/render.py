@@ -1,8 +1,6 @@
 """render(scene, shade): passes over the picture, bands of rows over threads, until enough samples are taken.
 
-The samples of each stream are taken in passes that end at powers of two, so that an Owen-scrambled sequence is
-complete after each, the error is known early, and Ctrl-C always leaves a whole picture. What a pixel gets depends on
-seed, pixel, stream and sample number alone; threads and bands change nothing.
+What a pixel gets depends on seed, pixel, stream and sample number alone; threads and bands change nothing.
 """
 
 from __future__ import annotations
@@ -11,7 +9,8 @@ import math
 import os
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, as_completed, wait
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,18 +23,18 @@ from raylab.errors import UserError
 from raylab.image import Image, estimate, invalid
 from raylab.jit import entry_point
 from raylab.motion import own_copy
-from raylab.packet import LANES, new_packet
+from raylab.packet import new_packet
 from raylab.pixel_sample import first_invalid
 from raylab.pixels import COUNT, cached_accumulate, fresh_accumulate, new_accumulator, view
 from raylab.plan import MAX_SAMPLES, Plan
 from raylab.scene import Scene
+from raylab.schedule import Schedule
 from raylab.stopping import Halves
 from raylab.strategies import strategy
 from raylab.surface import DEGENERATE_SAMPLES, INVALID_RAYS, SHADOW_RAYS, TALLIES
 from raylab.view import View
 
-SHORT = 0.5  # seconds: what can be done in this time is one pass
-FIRST_PASS = 1 << 22  # camera rays that the first pass may take over the whole picture
+LOOK = 1 << 14  # pixels that the progress bar takes the noise of
 
 
 @dataclass
@@ -57,18 +56,18 @@ class _Run:
     strategy: Any
     sampler: str
     seed: int
-    threads: int
     plan: Plan
-    strict: bool = False
-    name: str = ""  # of the strategy
-    accumulator: Any = None
+    schedule: Schedule
+    strict: bool
+    name: str  # of the strategy
+    accumulator: Any
+    band_rows: int | None = None
+    progress: Callable[[Progress], None] | None = None
     kernel: Any = None
     tally: Any = field(default_factory=lambda: np.zeros(TALLIES, np.int64))
     halves: Halves | None = None  # where it stops at an error
     checkpoint: Checkpoint | None = None
-    taken: int = 0  # samples of each stream, complete over the picture
     compile_seconds: float = 0.0
-    render_seconds: float = 0.0
 
     @property
     def cells(self) -> int:
@@ -80,6 +79,10 @@ class _Run:
         tally = np.zeros(TALLIES, np.int64)
         self.kernel(*_arguments(self, tally, rows, samples))
         return rows[1] - rows[0], tally
+
+    def band_in_time(self, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[int, Any]:
+        """The same, but nothing once the time is up."""
+        return (0, 0) if self.schedule.late() else self.band(rows, samples)
 
 
 def render(
@@ -103,7 +106,7 @@ def render(
     ----------
     shade : a name from `raylab.strategies.NAMES`, or shade(x, V, brdf, N, scene, rng), or shade(x, k_d, N, scene, rng).
     sampler : "independent", "stratified", "latin", "sobol" or "centre"; the scene's own by default.
-    spp, seconds, relative_error : stop after so many samples a pixel, after a time, or at a noise level
+    spp, seconds, relative_error : stop after so many samples a pixel, after a time of sampling, or at a noise level
         (`Image.relative_error`); at most one of them, spp of the scene by default.
     seed : picture number; the same seed gives the same bits for every number of threads.
     threads : default: all cores. band_rows : rows of a work item, chosen by default.
@@ -132,15 +135,19 @@ def render(
     if threads < 1:
         raise UserError(f"threads must be at least 1, got {threads}")
     seed = described.seed if seed is None else seed
-    run = _Run(scene, strategy(shade, scene), name, seed, threads, plan, strict)
-    run.name = shade if isinstance(shade, str) else getattr(shade, "__name__", "shade")
+    camera = described.camera
+    run = _Run(
+        scene, strategy(shade, scene), name, seed, plan, Schedule(plan, camera.width, camera.height, threads), strict,
+        shade if isinstance(shade, str) else getattr(shade, "__name__", "shade"),
+        new_accumulator(plan.streams, camera.width, camera.height), band_rows, progress,
+    )  # fmt: skip
+    if plan.relative_error > 0.0:
+        run.halves = Halves(plan.relative_error, name == "independent")
     if checkpoint is not None:
         run.checkpoint = Checkpoint(Path(checkpoint), described, shade, name, seed, plan)
-    return _execute(run, band_rows, progress or _silent)
-
-
-def _silent(progress: Progress) -> None:
-    """No progress bar."""
+        run.schedule.at_risk = INTERVAL
+        _resume(run, run.checkpoint)
+    return _execute(run)
 
 
 def default_threads() -> int:
@@ -148,23 +155,18 @@ def default_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _execute(run: _Run, band_rows: int | None, progress: Callable[[Progress], None]) -> Image:
-    camera = run.scene.description.camera
-    run.accumulator = new_accumulator(run.plan.streams, camera.width, camera.height)
-    if run.plan.relative_error > 0.0:
-        run.halves = Halves(run.plan.relative_error, run.sampler == "independent")
-    if run.checkpoint:
-        _resume(run, run.checkpoint)
+def _execute(run: _Run) -> Image:
     start = time.perf_counter()
     _compile(run)
     run.compile_seconds = time.perf_counter() - start
     complete = True
     try:
-        with ThreadPoolExecutor(run.threads) as pool:
+        with ThreadPoolExecutor(run.schedule.threads) as pool:
             for first, last in _passes(run):
-                _one_pass(run, pool, first, last, band_rows, progress)
+                _one_pass(run, pool, first, last)
         if run.checkpoint:
-            _keep(run, run.checkpoint)
+            with suppress(UserError):  # the picture is complete: it can still be written elsewhere
+                _keep(run, run.checkpoint)
     except KeyboardInterrupt:
         complete = False
     if run.halves:
@@ -189,114 +191,78 @@ def _compile(run: _Run) -> None:
 
 
 def _passes(run: _Run) -> Iterator[tuple[int, int]]:
-    """Ranges of samples that end at powers of two, the last one cut to what the plan allows.
-
-    A pass ends at 1 or at a multiple of LANES, so that which eye rays share a packet does not depend on the clock; and
-    where it is the noise that ends the render, it is looked at after every power of two, for the same reason.
-    """
-    while run.taken < run.plan.samples:
-        if run.halves and is_power_of_two(run.taken) and run.halves.stop(run.accumulator):
+    """Ranges of samples, until there are enough, or the time is up."""
+    schedule = run.schedule
+    schedule.begin()
+    while schedule.taken < run.plan.samples and not schedule.late():
+        if run.halves and is_power_of_two(schedule.taken) and run.halves.stop(run.accumulator):
             return
-        last = min(_next_end(run) if run.taken > 0 else _first_pass(run), run.plan.samples)
-        if last <= run.taken:
-            return
-        yield run.taken, last
+        first, last = schedule.taken, schedule.next_end()
+        yield first, last
+        schedule.taken = last
         if run.strict and invalid(run.accumulator):
-            raise first_invalid(run, (run.taken, last))
-        run.taken = last
-        if run.checkpoint and run.checkpoint.due():
+            raise first_invalid(run, (first, last))
+        if run.checkpoint and not schedule.late() and run.checkpoint.due(run.plan.seconds - schedule.seconds):
             _keep(run, run.checkpoint)
-
-
-def _next_end(run: _Run) -> int:
-    """Where the next pass ends: what can be done in a SHORT time, or as much again as is done; less if time is up."""
-    rate = run.taken / run.render_seconds if run.render_seconds > 0.0 else math.inf
-    fast = int(rate * SHORT).bit_length() - 1 if rate < math.inf and not run.halves else 0
-    last = max(LANES, 1 << max(run.taken.bit_length(), fast))
-    if run.checkpoint and rate < math.inf:  # a pass that is killed is lost
-        last = min(last, LANES * max(1, int(run.taken + rate * INTERVAL) // LANES))
-        last = max(last, LANES * (run.taken // LANES + 1))
-    if run.plan.seconds < math.inf:
-        last = min(last, run.taken + max(0, int((run.plan.seconds - run.render_seconds) * rate)))
-    return last
 
 
 def is_power_of_two(n: int) -> bool:
     return n > 0 and n & (n - 1) == 0
 
 
+def _one_pass(run: _Run, pool: ThreadPoolExecutor, first: int, last: int) -> None:
+    """Render samples first .. last - 1 of each stream, a band of rows to each work item."""
+    schedule, height = run.schedule, run.schedule.height
+    rows = run.band_rows or schedule.rows(last - first)
+    noise = _noise(run) if run.progress and schedule.seconds > 1.0 else math.nan
+    bands = [(top, min(top + rows, height)) for top in range(0, height, rows)]
+    waiting = [pool.submit(run.band_in_time, band, (first, last)) for band in bands]
+    finished_rows = 0
+    try:
+        for future in as_completed(waiting):
+            count, tally = future.result()
+            finished_rows += count
+            run.tally += tally
+            schedule.look()
+            if run.progress:
+                run.progress(_so_far(run, first + (last - first) * finished_rows / height, noise))
+    finally:
+        for future in waiting:
+            future.cancel()
+        wait(waiting)
+        schedule.look()
+
+
+def _so_far(run: _Run, samples: float, noise: float) -> Progress:
+    """After so many samples of each stream."""
+    done = int(samples * run.plan.streams)
+    rays = done * run.schedule.width * run.schedule.height + int(run.tally[SHADOW_RAYS])
+    total = None if run.plan.samples == MAX_SAMPLES else run.plan.samples * run.plan.streams
+    return Progress(done, total, rays, run.schedule.seconds, noise)
+
+
+def _noise(run: _Run) -> float:
+    """The relative error so far, of as many pixels as can be looked at in no time."""
+    step = max(1, math.isqrt(run.schedule.width * run.schedule.height // LOOK))
+    return Image(*estimate(run.accumulator[:, ::step, ::step], run.sampler == "independent")).relative_error
+
+
 def _keep(run: _Run, checkpoint: Checkpoint) -> None:
     """Write what is done."""
     halves = {f"half{half}": own for half, own in run.halves.kept.items()} if run.halves else {}
     checkpoint.save(
-        accumulator=run.accumulator, tally=run.tally, taken=run.taken, seconds=run.render_seconds, **halves
+        accumulator=run.accumulator, tally=run.tally, taken=run.schedule.taken, seconds=run.schedule.seconds, **halves
     )  # fmt: skip
 
 
 def _resume(run: _Run, checkpoint: Checkpoint) -> None:
-    """Go on from what was written, if there is something."""
-    kept = checkpoint.load()
-    if not kept:
-        return
-    run.accumulator, run.tally = kept["accumulator"], kept["tally"]
-    run.taken, run.render_seconds = int(kept["taken"]), float(kept["seconds"])
-    if run.halves:
-        run.halves.kept = {half: kept[f"half{half}"] for half in (0, 1) if f"half{half}" in kept}
-
-
-def _first_pass(run: _Run) -> int:
-    """How many samples of each stream to begin with: a packet in a small picture whose number is given, else one."""
-    if run.plan.samples == MAX_SAMPLES:
-        return 1
-    camera = run.scene.description.camera
-    return LANES if LANES * camera.width * camera.height * run.plan.streams <= FIRST_PASS else 1
-
-
-def _so_far(run: _Run) -> Image:
-    mean, error, counts = estimate(run.accumulator, run.sampler == "independent")
-    return Image(mean, error, counts)
-
-
-def _one_pass(
-    run: _Run,
-    pool: ThreadPoolExecutor,
-    first: int,
-    last: int,
-    band_rows: int | None,
-    progress: Callable[[Progress], None],
-) -> None:
-    """Render samples first .. last - 1 of each stream, a band of rows to each work item."""
-    camera = run.scene.description.camera
-    start, base = time.perf_counter(), run.render_seconds
-    shown = Progress(total=None if run.plan.samples == MAX_SAMPLES else run.plan.samples * run.plan.streams)
-    if progress is not _silent and base > 1.0:
-        shown.relative_error = _so_far(run).relative_error
-    per_row = camera.width * run.plan.streams * (last - first)
-    rows = band_rows or max(1, min(-(-camera.height // (4 * run.threads)), 200_000 // per_row))
-    waiting: set[Future[Any]] = set()
-    finished_rows = 0
-    try:
-        for top in range(0, camera.height, rows):
-            bottom = min(top + rows, camera.height)
-            waiting.add(pool.submit(run.band, (top, bottom), (first, last)))
-        while waiting:
-            done, waiting = wait(waiting, timeout=0.1, return_when=FIRST_COMPLETED)
-            for future in done:
-                count, tally = future.result()
-                finished_rows += count
-                run.tally += tally
-            run.render_seconds = base + time.perf_counter() - start
-            share = finished_rows / camera.height
-            shown.done = int((first + (last - first) * share) * run.plan.streams)
-            pixels = camera.width * camera.height
-            shown.rays, shown.seconds = shown.done * pixels + int(run.tally[SHADOW_RAYS]), run.render_seconds
-            progress(shown)
-    except BaseException:
-        for future in waiting:
-            future.cancel()
-        wait(waiting)
-        run.render_seconds = base + time.perf_counter() - start
-        raise
+    """Go on from what was written, if there is something; write at once, so that who cannot is told before the work."""
+    if kept := checkpoint.load():
+        run.accumulator, run.tally = kept["accumulator"], kept["tally"]
+        run.schedule.taken, run.schedule.seconds = int(kept["taken"]), float(kept["seconds"])
+        if run.halves:
+            run.halves.kept = {half: kept[f"half{half}"] for half in (0, 1) if f"half{half}" in kept}
+    _keep(run, checkpoint)
 
 
 def _image(run: _Run, complete: bool) -> Image:
@@ -305,9 +271,9 @@ def _image(run: _Run, complete: bool) -> Image:
     report = {
         "sampler": run.sampler,
         "seed": run.seed,
-        "threads": run.threads,
+        "threads": run.schedule.threads,
         "streams": run.plan.streams,
-        "seconds": {"compile": run.compile_seconds, "render": run.render_seconds},
+        "seconds": {"compile": run.compile_seconds, "render": run.schedule.seconds},
         "rays": {"camera": taken, "shadow": int(run.tally[SHADOW_RAYS])},
     }
     return Image(

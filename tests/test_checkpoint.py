@@ -40,7 +40,7 @@ def stopping_after(n):
 @pytest.fixture
 def always(monkeypatch):
     """Every pass is kept, and is short."""
-    monkeypatch.setattr(module.Checkpoint, "due", lambda self: True)
+    monkeypatch.setattr(module.Checkpoint, "due", lambda self, left: True)
 
 
 @pytest.mark.parametrize("how", [{"spp": 256}, {"relative_error": 0.01}], ids=str)

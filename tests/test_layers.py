@@ -17,7 +17,7 @@ ORDER = [
     "environment", "materials", "quadrics", "callbacks", "motion", "embree", "packet", "surface", "shadow",
     "shade", "beyond", "glossy", "direct", "basic", "lecture", "lens", "camera", "keyframes", "triangles",
     "defects", "geometry", "emitters", "clockwork", "palette", "sky", "sensor", "scene", "strategies", "pixels",
-    "image", "plan", "stopping", "checkpoint", "pixel_sample", "render", "probe",
+    "image", "plan", "schedule", "stopping", "checkpoint", "pixel_sample", "render", "probe",
     "plain", "ladders", "closed_forms", "io", "__init__", "slides", "explain", "progress", "stats",
     "study", "figures", "demo", "trials", "submission", "estimator_check", "estimator_watch", "metamorphic", "testing",
     "pytest_plugin", "grading", "stress", "options", "commands_student",

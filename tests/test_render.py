@@ -13,6 +13,7 @@ from scenes import GREY, camera, lamp, moved, outdoors, room
 from scipy import stats
 
 from raylab import description as d
+from raylab import schedule
 from raylab.errors import InvalidSampleError, UserError
 from raylab.image import estimate
 from raylab.packet import LANES
@@ -44,17 +45,17 @@ def test_threads_and_bands_change_no_bit(sampler):
 def test_passes_do_not_split_packets_as_the_clock_goes(monkeypatch, first_pass):
     """On a slow machine a picture is made in many passes and on a fast one in few; the packets are the same."""
     ends: list[int] = []
-    monkeypatch.setattr(render_module, "FIRST_PASS", first_pass)
+    monkeypatch.setattr(schedule, "FIRST_PASS", first_pass)
 
-    def noted(run, pool, first, last, band_rows, progress):
+    def noted(run, pool, first, last):
         ends.append(last)
-        one_pass(run, pool, first, last, band_rows, progress)
+        one_pass(run, pool, first, last)
 
     one_pass = render_module._one_pass
     monkeypatch.setattr(render_module, "_one_pass", noted)
     pictures = []
     for short in (1e-9, 1e9):
-        monkeypatch.setattr(render_module, "SHORT", short)
+        monkeypatch.setattr(schedule, "SHORT", short)
         ends.clear()
         pictures.append(render(room(17), "area", sampler="independent", spp=200, seed=5).mean)
         assert ends[-1] == 200
@@ -196,12 +197,6 @@ def test_a_lamp_seen_edge_on_is_counted():
         x = facet_point(y.p + Vec3(-0.1, 0.0, height), Vec3(1.0, 0.0, 0.0), 0.0, black)
         assert shadow(data, x, y) == (height <= 0.0)
         assert data.tally[DEGENERATE_SAMPLES] == counted
-
-
-def test_seconds_are_kept():
-    image = render(room(16), "area", seconds=0.5)
-    assert 0.0 < image.report["seconds"]["render"] < 30.0  # it stops; how soon depends on what else the machine does
-    assert (image.samples == image.samples[0, 0]).all()
 
 
 def test_relative_error_is_reached():
