@@ -146,8 +146,15 @@ def point_table(described: Sequence[d.Light], placement: Placement) -> Table:
         position = np.asarray(light.position, np.float64)
         if position.shape != (3,) or not np.all(np.isfinite(position)):
             raise SceneError(f"point light: position must be three finite numbers, got {position.tolist()}")
-        intensity = colour(light.intensity, "point light: intensity") * placement.scale**2
-        rows.append(np.concatenate([intensity, placement.points(position)]))
+        intensity = colour(light.intensity, "point light: intensity")
+        with np.errstate(over="ignore"):
+            row = np.concatenate([intensity * placement.scale**2, placement.points(position)])
+        if not np.all(np.isfinite(row)):
+            raise SceneError(
+                f"point light: in units of the scene its intensity or its position is beyond float64, got "
+                f"{intensity.tolist()} at {position.tolist()}"
+            )
+        rows.append(row)
     return Table(lights.PointLight, np.stack(rows))
 
 

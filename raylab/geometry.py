@@ -20,6 +20,7 @@ Array = npt.NDArray[np.float64]
 
 CENTRE_BITS = 10  # the centre is a multiple of 2^-10 of the scene's size
 QUADRIC_SEGMENTS = 8  # parts of the shutter interval for which Embree holds boxes of what is not a mesh
+LARGEST = float(np.finfo(np.float32).max)  # normal or texture coordinate
 
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
 _SQUARE_UV = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
@@ -226,9 +227,10 @@ def local_mesh(shape: d.Shape) -> tuple[Array, npt.NDArray[Any], Array | None, A
             f"shape {shape.name!r}: faces refer to vertices {faces.min()} to {faces.max()}, there are {len(vertices)}"
         )
     for name, data, columns in (("normals", shape.normals, 3), ("uv", shape.uv, 2)):
-        if data is not None and (np.shape(data) != (len(vertices), columns) or not np.all(np.isfinite(data))):
+        if data is not None and (np.shape(data) != (len(vertices), columns) or not np.all(np.abs(data) <= LARGEST)):
             raise SceneError(
-                f"shape {shape.name!r}: {name} must be finite, ({len(vertices)}, {columns}), got {np.shape(data)}"
+                f"shape {shape.name!r}: {name} must be finite in float32 and ({len(vertices)}, {columns}), "
+                f"got {np.shape(data)}"
             )
     return vertices, faces, shape.normals, shape.uv, "mesh"
 

@@ -23,6 +23,7 @@ Array = npt.NDArray[np.float64]
 Shutter = tuple[float, float]
 TOLERANCE = 2.0**-13  # of the size of a mesh and its path: how far its chords may stand off its curved path
 MOST_SEGMENTS = 128  # Embree takes 129 time steps
+LONGEST = 2.0**100  # 1.3e30: a time, or one over a time, whose square and that of a velocity is a number
 _Moved = TypeVar("_Moved", d.Shape, d.Camera)
 
 
@@ -31,8 +32,11 @@ def check(motion: d.Animation, what: str) -> None:
     times, matrices = np.asarray(motion.times, np.float64), np.asarray(motion.matrices, np.float64)
     if times.ndim != 1 or len(times) < 2 or matrices.shape != (len(times), 4, 4):
         raise SceneError(f"{what}: an animation needs two keyframes or more, got {times.size} times")
-    if not np.all(np.isfinite(times)) or not np.all(np.diff(times) > 0.0):
-        raise SceneError(f"{what}: the times of keyframes must be finite and increase, got {times.tolist()}")
+    if not (np.all(np.abs(times) <= LONGEST) and np.all(np.diff(times) >= 1.0 / LONGEST)):
+        raise SceneError(
+            f"{what}: the times of keyframes must be finite and increase, by {1.0 / LONGEST:.2g} or more and not "
+            f"beyond {LONGEST:.2g}, got {times.tolist()}"
+        )
     for time, m in zip(times, matrices, strict=True):
         if not np.all(np.isfinite(m)) or not np.array_equal(m[3], [0, 0, 0, 1]):
             raise SceneError(f"{what}: the matrix at time {time:g} must be finite and affine")
@@ -194,7 +198,8 @@ def chord_error(motion: d.Animation, shutter: Shutter, points: Array, segments: 
     worst = 0.0
     for k in range(segments):
         low, high = shutter[0] + k * step, shutter[0] + (k + 1) * step
-        curved = max(p.acceleration(points) for p in parts if p.start < high and p.end > low) * step * step / 8.0
+        within = [p for p in parts if p.start < high and p.end > low] or parts  # all, if the step is lost in rounding
+        curved = max(p.acceleration(points) for p in within) * step * step / 8.0
         slack = 1e-12 * step  # a keyframe on a time step makes no error
         kinked = sum(bend * step / 4.0 for time, bend in bends if low + slack < time < high - slack)
         worst = max(worst, curved + kinked)
@@ -231,6 +236,11 @@ def at_rest(description: d.SceneDescription) -> d.SceneDescription:
     shutter = (camera.shutter_open, camera.shutter_close)
     if not (math.isfinite(shutter[0]) and math.isfinite(shutter[1]) and shutter[0] <= shutter[1]):
         raise SceneError(f"camera: expected finite shutter_open <= shutter_close, got {shutter[0]} and {shutter[1]}")
+    if max(map(abs, shutter)) > LONGEST or 0.0 < shutter[1] - shutter[0] < 1.0 / LONGEST:
+        raise SceneError(
+            f"camera: the shutter must be open for no time or at least {1.0 / LONGEST:.2g}, and its times not beyond "
+            f"{LONGEST:.2g}, got {shutter[0]} and {shutter[1]}"
+        )
     if camera.motion is None and all(shape.motion is None for shape in description.shapes):
         return description
     still: Callable[..., d.Shape] = _put

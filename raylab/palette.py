@@ -57,6 +57,8 @@ class Palette:
             if np.ndim(value.pixels) != 3 or min(np.shape(value.pixels)) < 1:
                 raise SceneError(f"{what}: an image must be (h, w, 3), got {np.shape(value.pixels)}")
             reflectance(value.pixels, what)
+            if np.shape(value.to_uv) != (3, 3) or not np.all(np.isfinite(value.to_uv)):
+                raise SceneError(f"{what}: to_uv must be a finite (3, 3) matrix, got\n{value.to_uv}")
             self._bitmaps.append(value)
             return [0.0, 0.0, 0.0, len(self._bitmaps) - 1.0]
         return [*reflectance(value, what).tolist(), -1.0]

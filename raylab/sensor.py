@@ -12,6 +12,7 @@ import numpy.typing as npt
 from raylab import description as d
 from raylab import keyframes
 from raylab.camera import MovingCamera, Pinhole, ThinLens, make_aperture, make_filter
+from raylab.defects import RANGE
 from raylab.errors import SceneError
 from raylab.geometry import Placement
 from raylab.motion import Moving
@@ -32,6 +33,7 @@ def has_lens(camera: d.Camera) -> bool:
 def make_camera(camera: d.Camera, placement: Placement, motion: Any = None) -> Pinhole | ThinLens | MovingCamera:
     """The camera record in normalised coordinates; SceneError for a camera that sees nothing."""
     check_camera(camera)
+    check_place(camera, placement)
     if camera.motion is not None and isinstance(motion, Moving):
         return make_moving_camera(camera, placement)
     eye = pinhole(camera, placement)
@@ -93,6 +95,22 @@ def pinhole(camera: d.Camera, placement: Placement) -> Pinhole:
         skip=max(0.0, float(np.linalg.norm(origin)) - 2.0),
         filter=make_filter(camera.filter),
     )
+
+
+def check_place(camera: d.Camera, placement: Placement) -> None:
+    """SceneError for a distance whose square, or the inverse of it, is none in float64, in units of the scene."""
+    matrices = np.asarray([camera.to_world] if camera.motion is None else camera.motion.matrices, np.float64)
+    with np.errstate(over="ignore"):
+        reach = float(np.abs(placement.points(matrices[:, :3, 3])).max())
+    if not reach <= RANGE:
+        raise SceneError(
+            f"camera: it stands {reach:.3g} times the size of the scene away, at most {RANGE:.2g} is possible"
+        )
+    if has_lens(camera) and camera.focus_distance * placement.scale < 1.0 / RANGE:
+        raise SceneError(
+            f"camera: focus_distance must be at least {1.0 / RANGE:.2g} times the size of the scene, "
+            f"got {camera.focus_distance}"
+        )
 
 
 def check_camera(camera: d.Camera) -> None:

@@ -104,7 +104,9 @@ def shares(weights: Array) -> Array:
 
 def rotation(to_world: Array) -> Array:
     """The world-to-local rotation of an environment; SceneError for anything that is not one (translation aside)."""
-    m = np.asarray(to_world, np.float64)[:3, :3]
-    if not np.all(np.isfinite(m)) or np.abs(m @ m.T - np.eye(3)).max() > 1e-6:
-        raise SceneError(f"environment: to_world must be a rotation (no scale or shear), got\n{m}")
+    whole = np.asarray(to_world, np.float64)
+    m = whole[:3, :3]
+    numbers = whole.shape == (4, 4) and np.all(np.isfinite(whole)) and np.abs(m).max() <= 2.0  # no square overflows
+    if not numbers or np.abs(m @ m.T - np.eye(3)).max() > 1e-6:
+        raise SceneError(f"environment: to_world must be a finite (4, 4) rotation (no scale or shear), got\n{whole}")
     return m.T

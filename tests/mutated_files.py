@@ -62,12 +62,17 @@ TOKEN = {
 ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-32", "latin-1", "cp1252")
 NAMES = ("utf-8", "UTF-16", "ascii", "latin-1", "ebcdic", "", "utf-7")
 
-mutation = st.tuples(
-    st.sampled_from(("replace", "replace", "insert", "delete", "copy", "swap", "wrap", "cut")),
-    st.sampled_from(tuple(TOKEN)),
-    st.integers(0, 999),
-    st.one_of(st.sampled_from(NUMBERS), st.sampled_from(FRAGMENTS), st.integers(0, 999), st.text(max_size=3)),
-)
+
+def mutation(fragments: tuple[str, ...]) -> st.SearchStrategy[tuple]:
+    """What to do, to which token, how far down the file in thousandths, and with what."""
+    return st.tuples(
+        st.sampled_from(("replace", "replace", "insert", "delete", "copy", "swap", "wrap", "cut")),
+        st.sampled_from(tuple(TOKEN)),
+        st.integers(0, 999),
+        st.one_of(st.sampled_from(NUMBERS), st.sampled_from(fragments), st.integers(0, 999), st.text(max_size=3)),
+    )
+
+
 writing = st.one_of(
     st.just(("utf-8", None, None)),
     st.tuples(
@@ -76,9 +81,9 @@ writing = st.one_of(
         st.none() | st.tuples(st.integers(0, 999), st.binary(min_size=1, max_size=4)),
     ),
 )
-broken_file = st.tuples(st.sampled_from(GOOD) | st.sampled_from(BAD), st.lists(mutation, max_size=5), writing).map(
-    lambda a: mutated(*a)
-)
+broken_file = st.tuples(
+    st.sampled_from(GOOD) | st.sampled_from(BAD), st.lists(mutation(FRAGMENTS), max_size=5), writing
+).map(lambda a: mutated(*a))
 
 
 def mutated(text: str, mutations: list[tuple], writing: tuple) -> bytes:

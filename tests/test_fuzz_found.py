@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scenes import moved
+from scenes import animation, moved, shutter, turned
 
 from raylab import description as d
 from raylab.errors import SceneError
@@ -52,3 +52,78 @@ def test_the_direction_of_a_sun_has_any_length(length):
     sun = d.DirectionalLight(np.array([0.0, 0.0, -length]), np.ones(3))
     (found,) = Scene(d.SceneDescription(lights=(sun,))).data.suns
     assert [*found.w] == [0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize("far", [1e200, 1.7e308])
+def test_a_camera_whose_distance_has_no_square_is_refused(far):
+    """The square of its distance overflowed."""
+    eye = d.Camera(to_world=moved(0, 0, far))
+    with pytest.raises(SceneError, match="times the size of the scene away"):
+        Scene(d.SceneDescription(camera=eye, shapes=(WORLD,)))
+
+
+SLIDING = d.Rectangle(motion=animation(np.eye(4), moved(1, 0, 0)), name="sliding")
+
+
+@pytest.mark.parametrize("times", [(-1e308, 1e308), (0.0, 1e300), (0.0, 5e-324)])
+def test_a_shutter_open_for_longer_or_shorter_than_float64_can_divide_is_refused(times):
+    """Its length was infinite, and no part of the motion was found in it."""
+    scene = d.SceneDescription(camera=shutter(d.Camera(), *times), shapes=(WORLD, SLIDING))
+    with pytest.raises(SceneError, match="the shutter must be open for no time or at least"):
+        Scene(scene)
+
+
+def test_keyframes_closer_than_float64_can_divide_are_refused():
+    """The velocity between them was infinite."""
+    sudden = d.Rectangle(motion=animation(np.eye(4), moved(1, 0, 0), times=(0.0, 5e-324)), name="sudden")
+    with pytest.raises(SceneError, match="'sudden': the times of keyframes must be finite and increase, by"):
+        Scene(d.SceneDescription(camera=shutter(d.Camera()), shapes=(WORLD, sudden)))
+
+
+def test_a_shutter_may_be_shorter_than_the_rounding_of_its_time():
+    """A step of 2^-53 in time, cut in parts, was lost in rounding, and then no motion was found in it."""
+    turning = d.Rectangle(motion=animation(np.eye(4), turned(170.0)), name="turning")
+    brief = d.SceneDescription(camera=shutter(d.Camera(), 1.0 - 2.0**-53, 1.0), shapes=(WORLD, turning))
+    assert 0.0 <= Scene(brief).motion_error < 1e-12
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_texture_map_that_is_no_map_is_refused(bad):
+    """Each of its colours was NaN."""
+    board = d.Bitmap(np.ones((1, 1, 3)), to_uv=np.diag([bad, 1.0, 1.0]))
+    with pytest.raises(SceneError, match="to_uv must be a finite"):
+        Scene(d.SceneDescription(shapes=(d.Rectangle(front=d.Diffuse(board)),)))
+
+
+def test_texture_coordinates_beyond_float32_are_refused():
+    """They became infinite."""
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    mesh = d.Mesh(vertices=corners, faces=np.array([[0, 1, 2]]), uv=np.full((3, 2), 1e39), name="far")
+    with pytest.raises(SceneError, match="shape 'far': uv must be finite in float32"):
+        Scene(d.SceneDescription(shapes=(mesh,)))
+
+
+@pytest.mark.parametrize(("size", "position", "intensity"), [(2.0**-300, 0.0, 1e150), (1e-3, 1.7e308, 1.0)])
+def test_a_point_light_beyond_float64_in_units_of_the_scene_is_refused(size, position, intensity):
+    """Its radiance was infinite, or its place."""
+    light = d.PointLight(np.full(3, position), np.full(3, intensity))
+    world = d.Rectangle(to_world=moved(0, 0, 0, size, size, size))
+    with pytest.raises(SceneError, match="beyond float64"):
+        Scene(d.SceneDescription(shapes=(world,), lights=(light,)))
+
+
+def test_a_lens_focused_closer_than_float64_can_divide_is_refused():
+    """A division by zero was in the way."""
+    eye = d.Camera(aperture_radius=5e-324, focus_distance=5e-324)
+    with pytest.raises(SceneError, match="focus_distance must be at least"):
+        Scene(d.SceneDescription(camera=eye, shapes=(d.Rectangle(to_world=moved(0, 0, 0, 4, 4, 4)),)))
+
+
+@pytest.mark.parametrize(("place", "bad"), [((0, 3), np.nan), ((3, 0), np.inf), ((1, 1), np.nan), ((1, 1), 1e200)])
+def test_a_sky_whose_matrix_is_no_rotation_is_refused(place, bad):
+    """Where nothing reads it, what is no number went unnoticed; and the square of a large one overflowed."""
+    matrix = np.eye(4)
+    matrix[place] = bad
+    sky = d.ImageEnvironment(np.ones((2, 2, 3)), matrix)
+    with pytest.raises(SceneError, match="environment: to_world must be a finite"):
+        Scene(d.SceneDescription(shapes=(WORLD,), environment=sky))
