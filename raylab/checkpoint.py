@@ -24,11 +24,12 @@ from raylab.atomic import replacing
 from raylab.errors import UserError
 
 Array = npt.NDArray[Any]
-INTERVAL = 10.0  # s between two writings, and at least ten times what one takes
 
 
 class Checkpoint:
     """The file of one render, known by what determines its picture."""
+
+    interval = 10.0  # s between two writings, and at least ten times what one takes
 
     def __init__(self, path: Path, *what: Any) -> None:
         self.path, self.identity = path, hashlib.sha256(repr((__version__, fingerprint(what))).encode()).hexdigest()
@@ -53,10 +54,10 @@ class Checkpoint:
 
     def due(self, left: float) -> bool:
         """Is it time to write again, where `left` seconds are left in all?"""
-        return left > 2.0 * self._took and time.monotonic() - self._written > max(INTERVAL, 10.0 * self._took)
+        return left > 2.0 * self._took and time.monotonic() - self._written > max(self.interval, 10.0 * self._took)
 
     def save(self, **kept: Any) -> None:
-        """Replace the file in one step."""
+        """Replace the file in one step; UserError if it cannot be written, and then the last one stays."""
         start = time.monotonic()
         with replacing(self.path) as beside, open(beside, "wb") as file:
             np.savez(file, identity=np.array(self.identity), **kept)

@@ -14,6 +14,7 @@ from raylab.errors import InvalidSampleError, UserError
 from raylab.jit import interpreted
 from raylab.packet import LANES
 from raylab.pixels import INVALID, new_accumulator, radiance
+from raylab.run import Run
 from raylab.scene import Scene
 from raylab.strategies import strategy
 from raylab.surface import TALLIES, is_valid_ray
@@ -75,14 +76,14 @@ class PixelSample:
         return found
 
 
-def first_invalid(run: Any, samples: tuple[int, int]) -> InvalidSampleError:
+def first_invalid(run: Run, samples: tuple[int, int]) -> InvalidSampleError:
     """Of a render that has met one in samples first .. last - 1 of its streams: which, and how to see it again.
 
     Packet by packet, as in the picture, then sample by sample.
     """
     _, rows, columns = np.nonzero(run.accumulator[..., INVALID])
     row, column = min(zip(rows.tolist(), columns.tolist(), strict=True))
-    share = LANES // run.plan.streams
+    share = LANES // run.schedule.plan.streams
     for first in range(*samples, share):
         last = min(first + share, samples[1])
         for stream in _streams(run, row, column, first, last):
@@ -98,9 +99,9 @@ def first_invalid(run: Any, samples: tuple[int, int]) -> InvalidSampleError:
     raise AssertionError("the sample was there a moment ago")
 
 
-def _streams(run: Any, row: int, column: int, first: int, last: int) -> list[int]:
+def _streams(run: Run, row: int, column: int, first: int, last: int) -> list[int]:
     """Which streams of a pixel have a sample that is not finite among first .. last - 1."""
     camera = run.scene.description.camera
-    alone = replace(run, accumulator=new_accumulator(run.plan.streams, camera.width, camera.height))
+    alone = replace(run, accumulator=new_accumulator(run.schedule.plan.streams, camera.width, camera.height))
     alone.band((row, row + 1), (first, last))
     return [int(k) for k in np.flatnonzero(alone.accumulator[:, row, column, INVALID])]

@@ -1,14 +1,24 @@
-"""Progress bars: of a render, how far, how fast, how noisy; of an experiment, which step."""
+"""Progress: of a render, how far, how fast, how noisy; of an experiment, which step; and the bars that show it."""
 
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, TypeVar
 
-from raylab.render import Progress
-
 T = TypeVar("T")
+
+
+@dataclass
+class Progress:
+    """What a progress bar shows; `done` and `total` are samples of the whole picture, total None when unknown."""
+
+    done: int = 0
+    total: int | None = None
+    rays: int = 0
+    seconds: float = 0.0
+    relative_error: float = float("nan")
 
 
 class _OnScreen:

@@ -7,82 +7,24 @@ from __future__ import annotations
 
 import math
 import os
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed, wait
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from raylab import samplers
-from raylab.checkpoint import INTERVAL, Checkpoint
+from raylab.checkpoint import Checkpoint
 from raylab.errors import UserError
-from raylab.image import Image, estimate, invalid
-from raylab.jit import entry_point
-from raylab.motion import own_copy
-from raylab.packet import new_packet
+from raylab.image import Image, invalid
 from raylab.pixel_sample import first_invalid
-from raylab.pixels import COUNT, cached_accumulate, fresh_accumulate, new_accumulator, view
 from raylab.plan import MAX_SAMPLES, Plan
+from raylab.progress import Progress
+from raylab.run import Run
 from raylab.scene import Scene
 from raylab.schedule import Schedule
-from raylab.stopping import Halves
 from raylab.strategies import strategy
-from raylab.surface import DEGENERATE_SAMPLES, INVALID_RAYS, SHADOW_RAYS, TALLIES
-from raylab.view import View
-
-LOOK = 1 << 14  # pixels that the progress bar takes the noise of
-
-
-@dataclass
-class Progress:
-    """What a progress bar shows; `done` and `total` are samples of the whole picture, total None when unknown."""
-
-    done: int = 0
-    total: int | None = None
-    rays: int = 0
-    seconds: float = 0.0
-    relative_error: float = float("nan")
-
-
-@dataclass
-class _Run:
-    """A render under way: its picture so far, its tallies and its clocks."""
-
-    scene: Scene
-    strategy: Any
-    sampler: str
-    seed: int
-    plan: Plan
-    schedule: Schedule
-    strict: bool
-    name: str  # of the strategy
-    accumulator: Any
-    band_rows: int | None = None
-    progress: Callable[[Progress], None] | None = None
-    kernel: Any = None
-    tally: Any = field(default_factory=lambda: np.zeros(TALLIES, np.int64))
-    halves: Halves | None = None  # where it stops at an error
-    checkpoint: Checkpoint | None = None
-    compile_seconds: float = 0.0
-
-    @property
-    def cells(self) -> int:
-        """Of a stratified sampler: the samples of a stream, where they are known beforehand."""
-        return self.plan.samples if self.plan.samples < MAX_SAMPLES else 16
-
-    def band(self, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[int, Any]:
-        """Take some samples of some rows; how many rows, and what was counted."""
-        tally = np.zeros(TALLIES, np.int64)
-        self.kernel(*_arguments(self, tally, rows, samples))
-        return rows[1] - rows[0], tally
-
-    def band_in_time(self, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[int, Any]:
-        """The same, but nothing once the time is up."""
-        return (0, 0) if self.schedule.late() else self.band(rows, samples)
+from raylab.surface import SHADOW_RAYS
 
 
 def render(
@@ -136,18 +78,13 @@ def render(
         raise UserError(f"threads must be at least 1, got {threads}")
     seed = described.seed if seed is None else seed
     camera = described.camera
-    run = _Run(
-        scene, strategy(shade, scene), name, seed, plan, Schedule(plan, camera.width, camera.height, threads), strict,
-        shade if isinstance(shade, str) else getattr(shade, "__name__", "shade"),
-        new_accumulator(plan.streams, camera.width, camera.height), band_rows, progress,
+    run = Run(
+        scene, strategy(shade, scene), shade if isinstance(shade, str) else getattr(shade, "__name__", "shade"), name,
+        seed, strict, Schedule(plan, camera.width, camera.height, threads, band_rows),
     )  # fmt: skip
-    if plan.relative_error > 0.0:
-        run.halves = Halves(plan.relative_error, name == "independent")
     if checkpoint is not None:
-        run.checkpoint = Checkpoint(Path(checkpoint), described, shade, name, seed, plan)
-        run.schedule.at_risk = INTERVAL
-        _resume(run, run.checkpoint)
-    return _execute(run)
+        run.resume(Checkpoint(Path(checkpoint), described, shade, name, seed, plan))
+    return _execute(run, progress)
 
 
 def default_threads() -> int:
@@ -155,46 +92,25 @@ def default_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _execute(run: _Run) -> Image:
-    start = time.perf_counter()
-    _compile(run)
-    run.compile_seconds = time.perf_counter() - start
+def _execute(run: Run, progress: Callable[[Progress], None] | None) -> Image:
+    run.compile()
     complete = True
     try:
         with ThreadPoolExecutor(run.schedule.threads) as pool:
             for first, last in _passes(run):
-                _one_pass(run, pool, first, last)
-        if run.checkpoint:
-            with suppress(UserError):  # the picture is complete: it can still be written elsewhere
-                _keep(run, run.checkpoint)
+                _one_pass(run, pool, first, last, progress)
+        with suppress(UserError):  # a picture that is complete can still be written elsewhere
+            run.keep()
     except KeyboardInterrupt:
         complete = False
-    if run.halves:
-        run.accumulator = run.halves.picture(run.accumulator)
-    return _image(run, complete)
+    return run.image(complete)
 
 
-def _arguments(run: _Run, tally: Any, rows: tuple[int, int], samples: tuple[int, int]) -> tuple[Any, ...]:
-    camera = run.scene.description.camera
-    sampler = samplers.make(run.sampler, run.seed, run.cells)
-    data = own_copy(run.scene.data._replace(tally=View(tally)))
-    pixels = view(run.accumulator)
-    return (
-        data, run.scene.camera, run.strategy, sampler, new_packet(), pixels, camera.width, camera.height, rows, samples
-    )  # fmt: skip
-
-
-def _compile(run: _Run) -> None:
-    """Compile the kernel of this scene and strategy, or load it from the cache."""
-    kernel = cached_accumulate if run.strategy.cached else fresh_accumulate
-    run.kernel = entry_point(kernel, _arguments(run, run.tally, (0, 0), (0, 0)))
-
-
-def _passes(run: _Run) -> Iterator[tuple[int, int]]:
+def _passes(run: Run) -> Iterator[tuple[int, int]]:
     """Ranges of samples, until there are enough, or the time is up."""
-    schedule = run.schedule
+    schedule, plan = run.schedule, run.schedule.plan
     schedule.begin()
-    while schedule.taken < run.plan.samples and not schedule.late():
+    while schedule.taken < plan.samples and not schedule.late():
         if run.halves and is_power_of_two(schedule.taken) and run.halves.stop(run.accumulator):
             return
         first, last = schedule.taken, schedule.next_end()
@@ -202,21 +118,21 @@ def _passes(run: _Run) -> Iterator[tuple[int, int]]:
         schedule.taken = last
         if run.strict and invalid(run.accumulator):
             raise first_invalid(run, (first, last))
-        if run.checkpoint and not schedule.late() and run.checkpoint.due(run.plan.seconds - schedule.seconds):
-            _keep(run, run.checkpoint)
+        if run.checkpoint and not schedule.late() and run.checkpoint.due(plan.seconds - schedule.seconds):
+            run.keep()
 
 
 def is_power_of_two(n: int) -> bool:
     return n > 0 and n & (n - 1) == 0
 
 
-def _one_pass(run: _Run, pool: ThreadPoolExecutor, first: int, last: int) -> None:
+def _one_pass(
+    run: Run, pool: ThreadPoolExecutor, first: int, last: int, progress: Callable[[Progress], None] | None
+) -> None:
     """Render samples first .. last - 1 of each stream, a band of rows to each work item."""
-    schedule, height = run.schedule, run.schedule.height
-    rows = run.band_rows or schedule.rows(last - first)
-    noise = _noise(run) if run.progress and schedule.seconds > 1.0 else math.nan
-    bands = [(top, min(top + rows, height)) for top in range(0, height, rows)]
-    waiting = [pool.submit(run.band_in_time, band, (first, last)) for band in bands]
+    schedule = run.schedule
+    noise = run.noise() if progress and schedule.seconds > 1.0 else math.nan
+    waiting = [pool.submit(run.band_in_time, band, (first, last)) for band in schedule.bands(last - first)]
     finished_rows = 0
     try:
         for future in as_completed(waiting):
@@ -224,8 +140,8 @@ def _one_pass(run: _Run, pool: ThreadPoolExecutor, first: int, last: int) -> Non
             finished_rows += count
             run.tally += tally
             schedule.look()
-            if run.progress:
-                run.progress(_so_far(run, first + (last - first) * finished_rows / height, noise))
+            if progress:
+                progress(_so_far(run, first + (last - first) * finished_rows / schedule.height, noise))
     finally:
         for future in waiting:
             future.cancel()
@@ -233,50 +149,10 @@ def _one_pass(run: _Run, pool: ThreadPoolExecutor, first: int, last: int) -> Non
         schedule.look()
 
 
-def _so_far(run: _Run, samples: float, noise: float) -> Progress:
+def _so_far(run: Run, samples: float, noise: float) -> Progress:
     """After so many samples of each stream."""
-    done = int(samples * run.plan.streams)
-    rays = done * run.schedule.width * run.schedule.height + int(run.tally[SHADOW_RAYS])
-    total = None if run.plan.samples == MAX_SAMPLES else run.plan.samples * run.plan.streams
-    return Progress(done, total, rays, run.schedule.seconds, noise)
-
-
-def _noise(run: _Run) -> float:
-    """The relative error so far, of as many pixels as can be looked at in no time."""
-    step = max(1, math.isqrt(run.schedule.width * run.schedule.height // LOOK))
-    return Image(*estimate(run.accumulator[:, ::step, ::step], run.sampler == "independent")).relative_error
-
-
-def _keep(run: _Run, checkpoint: Checkpoint) -> None:
-    """Write what is done."""
-    halves = {f"half{half}": own for half, own in run.halves.kept.items()} if run.halves else {}
-    checkpoint.save(
-        accumulator=run.accumulator, tally=run.tally, taken=run.schedule.taken, seconds=run.schedule.seconds, **halves
-    )  # fmt: skip
-
-
-def _resume(run: _Run, checkpoint: Checkpoint) -> None:
-    """Go on from what was written, if there is something; write at once, so that who cannot is told before the work."""
-    if kept := checkpoint.load():
-        run.accumulator, run.tally = kept["accumulator"], kept["tally"]
-        run.schedule.taken, run.schedule.seconds = int(kept["taken"]), float(kept["seconds"])
-        if run.halves:
-            run.halves.kept = {half: kept[f"half{half}"] for half in (0, 1) if f"half{half}" in kept}
-    _keep(run, checkpoint)
-
-
-def _image(run: _Run, complete: bool) -> Image:
-    mean, error, counts = estimate(run.accumulator, run.sampler == "independent")
-    taken = int(run.accumulator[..., COUNT].sum()) + invalid(run.accumulator)
-    report = {
-        "sampler": run.sampler,
-        "seed": run.seed,
-        "threads": run.schedule.threads,
-        "streams": run.plan.streams,
-        "seconds": {"compile": run.compile_seconds, "render": run.schedule.seconds},
-        "rays": {"camera": taken, "shadow": int(run.tally[SHADOW_RAYS])},
-    }
-    return Image(
-        mean, error, counts, invalid(run.accumulator), int(run.tally[INVALID_RAYS]),
-        int(run.tally[DEGENERATE_SAMPLES]), complete, report,
-    )  # fmt: skip
+    schedule, plan = run.schedule, run.schedule.plan
+    done = int(samples * plan.streams)
+    rays = done * schedule.width * schedule.height + int(run.tally[SHADOW_RAYS])
+    total = None if plan.samples == MAX_SAMPLES else plan.samples * plan.streams
+    return Progress(done, total, rays, schedule.seconds, noise)

@@ -31,6 +31,7 @@ class Schedule:
     width: int
     height: int
     threads: int
+    band_rows: int | None = None  # of a work item, if given
     at_risk: float = math.inf  # seconds of work that may be lost
     taken: int = 0  # samples of each stream, complete over the picture
     seconds: float = 0.0
@@ -79,8 +80,12 @@ class Schedule:
         n = int(min(half / self._row_seconds(1) * self.threads / self.height, self._part() / self._row_seconds(1)))
         return max(1, n - (self.taken + n) % LANES if n > LANES else n)
 
-    def rows(self, samples: int) -> int:
-        """Rows of a work item that takes so many samples of each stream: no thread waits long for the others."""
+    def bands(self, samples: int) -> list[tuple[int, int]]:
+        """Work items that take so many samples of each stream, each of some rows: no thread waits long for another."""
+        rows = self.band_rows or self._rows(samples)
+        return [(top, min(top + rows, self.height)) for top in range(0, self.height, rows)]
+
+    def _rows(self, samples: int) -> int:
         rows = min(-(-self.height // (4 * self.threads)), PIECE // (self.width * self.plan.streams * samples))
         if self.plan.seconds < math.inf and self.taken > 0:
             rows = min(rows, int(self._part() / self._row_seconds(samples)))

@@ -15,8 +15,7 @@ import pytest
 from conftest import Done
 
 import raylab
-from raylab.progress import Bar
-from raylab.render import Progress
+from raylab.progress import Bar, Progress
 
 SCENE = """<scene version="3.0.0">
 <default name="size" value="6"/> <default name="radiance" value="2"/>

@@ -47,9 +47,9 @@ def test_passes_do_not_split_packets_as_the_clock_goes(monkeypatch, first_pass):
     ends: list[int] = []
     monkeypatch.setattr(schedule, "FIRST_PASS", first_pass)
 
-    def noted(run, pool, first, last):
+    def noted(run, pool, first, last, progress):
         ends.append(last)
-        one_pass(run, pool, first, last)
+        one_pass(run, pool, first, last, progress)
 
     one_pass = render_module._one_pass
     monkeypatch.setattr(render_module, "_one_pass", noted)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +10,9 @@ from scenes import lamp, room
 
 from raylab import checkpoint, schedule
 from raylab.render import render
+from raylab.run import Run
 from raylab.scene import Scene
 
-render_module = sys.modules["raylab.render"]  # raylab.render is the function
 TIME, ROWS = 10.0, 16
 
 
@@ -25,7 +24,7 @@ class Machine:
         self.counts = np.zeros(ROWS)  # samples of each stream, by row
 
     def patch(self, monkeypatch) -> None:
-        take = render_module._Run.band
+        take = Run.band
 
         def band(run, rows, samples):
             n = samples[1] - samples[0]
@@ -34,7 +33,7 @@ class Machine:
             return take(run, rows, samples)
 
         monkeypatch.setattr(schedule, "clock", lambda: self.now)
-        monkeypatch.setattr(render_module._Run, "band", band)
+        monkeypatch.setattr(Run, "band", band)
 
 
 def steady(per_second):
