@@ -101,7 +101,8 @@ class _Builder:
         total = sum(len(m.vertices) for m in self.meshes)
         vertices, start = np.zeros((total + 1, 3), np.float32), 0
         for m in self.meshes:
-            vertices[start : start + len(m.vertices)] = self.placement.points(m.vertices)
+            with np.errstate(over="ignore"):  # where no triangle was kept, vertices may be anywhere
+                vertices[start : start + len(m.vertices)] = self.placement.points(m.vertices)
             start += len(m.vertices)
         return vertices
 

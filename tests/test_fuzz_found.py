@@ -8,6 +8,7 @@ from scenes import animation, moved, shutter, turned
 
 from raylab import description as d
 from raylab.errors import SceneError
+from raylab.io.mesh_file import read_mesh
 from raylab.scene import Scene
 
 WORLD = d.Rectangle(name="world")
@@ -127,3 +128,36 @@ def test_a_sky_whose_matrix_is_no_rotation_is_refused(place, bad):
     sky = d.ImageEnvironment(np.ones((2, 2, 3)), matrix)
     with pytest.raises(SceneError, match="environment: to_world must be a finite"):
         Scene(d.SceneDescription(shapes=(WORLD,), environment=sky))
+
+
+PLY = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+end_header
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0\nvt 1\nvt 0\nf 1/1 2/2 3/3\n", "needs 2 numbers for its texture"),
+        ("a.ply", f"{PLY} 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "cannot read the mesh"),
+    ],
+)
+def test_a_mesh_file_with_too_few_numbers_is_refused(tmp_path, name, text, words):
+    """They ended in an IndexError and a ValueError, far from the reader."""
+    (tmp_path / name).write_text(text)
+    with pytest.raises(SceneError, match=words):
+        read_mesh(tmp_path / name)
+
+
+def test_vertices_of_triangles_that_are_left_out_may_be_anywhere():
+    """They overflowed in float32, though no triangle was left there."""
+    corners = np.array([[1e45, 0.0, 0.0], [1.0, 0, 0], [0, 1, 0]])
+    needle = d.Mesh(vertices=corners, faces=np.array([[0, 1, 2]]), name="needle")
+    assert any("left out" in warning for warning in Scene(d.SceneDescription(shapes=(WORLD, needle))).warnings)

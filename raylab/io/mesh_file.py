@@ -45,7 +45,12 @@ def read_mesh(path: str | Path) -> MeshData:
         raise SceneError(f'cannot read the mesh "{file}": {error}') from None
     except Exception as error:  # trimesh raises whatever its parser trips over
         raise SceneError(f'cannot read the mesh "{file}": {type(error).__name__}: {error}') from error
-    return _checked(file, fields)
+    try:
+        return _checked(file, fields)
+    except SceneError:
+        raise
+    except (ValueError, TypeError, IndexError) as error:  # rows of different lengths, which trimesh lets through
+        raise SceneError(f'cannot read the mesh "{file}": {type(error).__name__}: {error}') from error
 
 
 def _read_obj(data: bytes) -> dict[str, Any]:
@@ -137,10 +142,14 @@ def _checked(file: Path, fields: dict[str, Any]) -> MeshData:
             ((faces < 0) | (faces >= len(vertices))).any(axis=1))  # fmt: skip
     visual, normals = fields.get("visual"), fields.get("vertex_normals")
     uv = None if visual is None or visual.uv is None else np.array(visual.uv, dtype=np.float64)
+    for name, rows, least in (("texture coordinates", uv, 2), ("normals", normals, 3)):
+        if rows is not None and (np.ndim(rows) != 2 or len(rows) != len(vertices) or np.shape(rows)[1] < least):
+            raise SceneError(f'each vertex of the mesh "{file}" needs {least} numbers for its {name}')
     if uv is not None:
+        uv = uv[:, :2]
         _refuse(file, "texture coordinates that are not finite", ~np.isfinite(uv).all(axis=1))
     if normals is not None:
-        normals = np.array(normals, dtype=np.float64)
+        normals = np.array(normals, dtype=np.float64)[:, :3]
         length = np.linalg.norm(normals, axis=1, keepdims=True)
         _refuse(file, "normals that are zero or not finite", ~(np.isfinite(length) & (length > 0))[:, 0])
         normals /= length
