@@ -22,16 +22,16 @@ ONE = [next((n, rights) for n, rights in MANNERS[5:] if n == name) for name in N
 
 
 def climbed(rights, until):
-    """The functions of a submission, whose answers may stand in several files; nothing but notes is said of them."""
+    """The functions of a submission, whose answers may stand in several files, and what is said of them but notes."""
     files = defaultdict(list)
     for right in rights:
         files[right.file].append(right)
-    functions = {}
+    functions, said = {}, []
     for own in files.values():
         found = climb(own[0].text.encode(), [right.asked for right in own], until=until)
-        assert [str(f) for f in found.findings if f.kind != "note"] == []
+        said += [str(f) for f in found.findings if f.kind != "note"]
         functions |= found.functions
-    return functions
+    return functions, said
 
 
 def named(case):
@@ -40,14 +40,17 @@ def named(case):
 
 @pytest.mark.parametrize("case", ONE, ids=named)
 def test_a_right_answer_climbs_in_plain_python(case):
-    climbed(case[1], "interpret")
+    _, said = climbed(case[1], "interpret")
+    assert said == []
 
 
 @pytest.mark.certify
 @pytest.mark.parametrize("case", MANNERS, ids=named)
 def test_a_right_answer_gets_full_points(case):
     assignment = load(case[0])
-    source = InProcess(climbed(case[1], "cross-check"))
+    functions, said = climbed(case[1], "cross-check")
+    assert said == []
+    source = InProcess(functions)
     judge = Judge(assignment, source)
     judged = [judge.judge(own) for own in assignment.properties]
     score, decided = sum(j.score for j in judged), sum(j.outcome == "PASS" for j in judged)
