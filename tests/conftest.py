@@ -17,7 +17,7 @@ SLOW = (
     "test_hostile", "test_left_out", "test_reference_scenes", "test_closed_form_skies", "test_trials",
     "test_closed_form_renders", "test_mutants", "test_motion_blur", "test_metamorphic", "test_session",
     "test_submission_accepted", "test_lessons", "test_gradescope", "test_estimators", "test_stats_sampler",
-    "test_study", "test_demo", "test_cli", "test_estimator_check", "test_figures",
+    "test_study", "test_demo", "test_cli", "test_estimator_check", "test_figures", "test_study_tails",
 )  # fmt: skip
 
 
