@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mutants.trials import frame
+from mutants.trial import frame
 
 NODES, WEIGHTS = (0.5 * (v + o) for v, o in zip(np.polynomial.legendre.leggauss(6), (1.0, 0.0), strict=True))
 

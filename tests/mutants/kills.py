@@ -6,7 +6,7 @@ import secrets
 
 import numpy as np
 
-from mutants.trials import ERROR, Trial, affine, frame
+from mutants.trial import ERROR, Trial, affine, frame
 from raylab import description as d
 from raylab.jit import njit
 from raylab.point import facet_point

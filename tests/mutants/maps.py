@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mutants.charts import Chart
-from mutants.trials import unit
+from mutants.trial import unit
 from raylab import sampling as s
 from raylab.jit import njit
 from raylab.record import record
@@ -238,7 +238,8 @@ class Map:
 
 def maps() -> dict[str, Callable[[], Map]]:
     from mutants.kills import scene_of
-    from mutants.trials import TRIALS, image_breaks
+    from mutants.sky_trials import image_breaks
+    from mutants.trials import TRIALS
     from raylab.brdf import Lambertian, Phong
 
     axis, up = tuple(N), Chart(axis=tuple(N), rows=(0.0,))
