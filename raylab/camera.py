@@ -17,11 +17,12 @@ import numpy as np
 from raylab.description import Filter
 from raylab.embree import TNEAR
 from raylab.jit import njit
+from raylab.lanes import FILM, LANES, LENS
 from raylab.pose import pose_at
 from raylab.record import record
-from raylab.sampling import sample_concentric_disk, sample_triangle, sin_cos_turns
+from raylab.sampling import sample_concentric_disk, sin_cos_turns
 from raylab.surface import round32
-from raylab.vec3 import Vec3, length
+from raylab.vec3 import Vec3, cross, dot, normalize
 from raylab.view import View
 
 CENTRE = (0.5, 0.5)
@@ -98,29 +99,29 @@ class Pinhole(NamedTuple):
     corner: Vec3
     across: Vec3
     down: Vec3
-    near: float
+    start: float  # depths between which something can be hit, see `first_depth`
     far: float
-    skip: float  # how far a distant camera may advance before anything can be hit
     filter: Any
 
     def draw(self, rng):
         """A point for the pixel filter, and none for the aperture."""
         return rng.square(), CENTRE
 
+    def draw_lanes(self, lanes):
+        """The same for each lane of a packet."""
+        lanes.squares(FILM, 1)
+
     def ray(self, column, row, film, lens, time):
         """Origin, direction and length of the eye ray through the random points `film` and `lens`."""
         dx, dy = self.filter.sample(film)
         d = self.corner + self.across * (column + 0.5 + dx) + self.down * (row + 0.5 + dy)
-        start = self.near
-        if self.skip > 0.0:
-            start = max(start, self.skip / length(d))
-        return round32(self.origin + d * start), round32(d), max(TNEAR, self.far - start)
+        return round32(self.origin + d * self.start), round32(d), max(TNEAR, self.far - self.start)
 
     def at(self, pose):
         """The camera at the local origin, moved to a pose."""
         return Pinhole(
             pose.p, turned(pose, self.corner), turned(pose, self.across), turned(pose, self.down),
-            self.near, self.far, max(0.0, length(pose.p) - 2.0), self.filter,
+            first_depth(self.start, pose.p, pose.x, pose.y, pose.z), self.far, self.filter,
         )  # fmt: skip
 
 
@@ -128,6 +129,17 @@ class Pinhole(NamedTuple):
 def turned(pose, v):
     """A vector of the camera's own coordinates in the world."""
     return pose.x * v.x + pose.y * v.y + pose.z * v.z
+
+
+@njit
+def first_depth(near, origin, left, up, forward):
+    """The depth at which eye rays begin: what is in front of it lies in no scene, all of which is within 2 of 0.
+
+    Along every ray the depth grows by 1 with t, and all points of an aperture have depth 0. So a distant camera's rays
+    begin beside the scene, where float32 is fine.
+    """
+    n = normalize(cross(left, up))
+    return max(near, (-2.0 - dot(origin, n) * math.copysign(1.0, dot(forward, n))) / abs(dot(forward, n)))
 
 
 # --- apertures ---
@@ -138,10 +150,6 @@ class DiskAperture(NamedTuple):
     """A round opening of the given radius."""
 
     radius: float
-
-    def reach(self):
-        """The distance from the centre to the furthest point."""
-        return self.radius
 
     def sample(self, u):
         x, y = sample_concentric_disk(u)
@@ -158,13 +166,12 @@ class PolygonAperture(NamedTuple):
     cosine: float  # of the angle of a sector
     sine: float
 
-    def reach(self):
-        return self.radius
-
     def sample(self, u):
         wide = u[0] * self.sectors
         sector = np.floor(wide)
-        b1, b2 = sample_triangle((wide - sector, u[1]))
+        u1, u2 = wide - sector, u[1]
+        half = 0.5 * min(u1, u2)  # Heitz 2019, "A low-distortion map between triangle and square"
+        b1, b2 = (half, u2 - half) if u2 > u1 else (u1 - half, half)
         x, y = self.radius * (b1 + b2 * self.cosine), self.radius * b2 * self.sine
         sine, cosine = sin_cos_turns(self.first + sector / self.sectors)
         return cosine * x - sine * y, sine * x + cosine * y
@@ -191,9 +198,8 @@ class ThinLens(NamedTuple):
     corner: Vec3
     across: Vec3
     down: Vec3
-    near: float
+    start: float
     far: float
-    distant: bool  # whether a ray may start so far away that it advances first, see Pinhole.skip
     left: Vec3
     up: Vec3
     aperture: Any
@@ -201,27 +207,27 @@ class ThinLens(NamedTuple):
     filter: Any
 
     def draw(self, rng):
-        """A point for the pixel filter and one for the aperture."""
-        return rng.square(), rng.square()
+        """A point for the pixel filter and a point of the aperture."""
+        return rng.square(), self.aperture.sample(rng.square())
+
+    def draw_lanes(self, lanes):
+        lanes.squares(FILM, 2)  # the second of them in row LENS
+        for i in range(LANES):
+            lanes.packet.keep_point(LENS, i, self.aperture.sample(lanes.packet.point(LENS, i)))
 
     def ray(self, column, row, film, lens, time):
         dx, dy = self.filter.sample(film)
         toward = self.corner + self.across * (column + 0.5 + dx) + self.down * (row + 0.5 + dy)
-        x, y = self.aperture.sample(lens)
-        a = self.left * x + self.up * y
+        a = self.left * lens[0] + self.up * lens[1]
         d = toward - a * self.power
-        o = self.origin + a
-        start = self.near
-        if self.distant:
-            start = max(start, (length(o) - 2.0) / length(d))
-        return round32(o + d * start), round32(d), max(TNEAR, self.far - start)
+        return round32(self.origin + a + d * self.start), round32(d), max(TNEAR, self.far - self.start)
 
     def at(self, pose):
         """The camera at the local origin, moved to a pose."""
         return ThinLens(
-            pose.p, turned(pose, self.corner), turned(pose, self.across), turned(pose, self.down), self.near, self.far,
-            length(pose.p) + self.aperture.reach() > 2.0, turned(pose, self.left), turned(pose, self.up),
-            self.aperture, self.power, self.filter,
+            pose.p, turned(pose, self.corner), turned(pose, self.across), turned(pose, self.down),
+            first_depth(self.start, pose.p, pose.x, pose.y, pose.z), self.far, turned(pose, self.left),
+            turned(pose, self.up), self.aperture, self.power, self.filter,
         )  # fmt: skip
 
 
@@ -234,6 +240,9 @@ class MovingCamera(NamedTuple):
 
     def draw(self, rng):
         return self.still.draw(rng)
+
+    def draw_lanes(self, lanes):
+        self.still.draw_lanes(lanes)
 
     def ray(self, column, row, film, lens, time):
         pose = pose_at(self.pieces, 0, len(self.pieces), time)

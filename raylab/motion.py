@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from raylab.jit import njit
+from raylab.lanes import TIME
 from raylab.lights import MESH, RECTANGLE
 from raylab.point import ULPS, triangle_frame
 from raylab.pose import pose_at
@@ -45,6 +46,9 @@ class Static(NamedTuple):
     def draw(self, rng):
         return 0.0
 
+    def draw_lanes(self, lanes):
+        pass
+
     def set(self, time):
         pass
 
@@ -70,8 +74,11 @@ class Moving(NamedTuple):
 
     def draw(self, rng):
         """Slide: "generate rays with times distributed over shutter interval"."""
-        self.clock[0] = np.float32(rng.number())
-        return self.clock[0]
+        return np.float64(np.float32(rng.number()))
+
+    def draw_lanes(self, lanes):
+        """The same for each lane of a packet."""
+        lanes.number(TIME)
 
     def set(self, time):
         """Bring the lights to where they stand at a time."""

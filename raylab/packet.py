@@ -15,11 +15,11 @@ from numba.extending import intrinsic, overload
 
 from raylab.embree import BYTES, INT32, call, library
 from raylab.jit import OPTIONS, njit
+from raylab.lanes import LANES, ROWS, TIME
 from raylab.record import record
 from raylab.vec3 import Vec3
 from raylab.view import View
 
-LANES = 16
 _PACKET_WORDS = 24  # of an RTCRayHit, and room to spare
 _COHERENT = np.array([1 << 16, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], np.int32)  # RTCIntersectArguments: flags, features
 
@@ -38,23 +38,27 @@ class Packet(NamedTuple):
     words: View  # (24 LANES,) float32
     ids: View  # the same memory as int32
     valid: View  # (LANES,) int32: -1 for a lane in use, 0 for one that is not
-    points: View  # (4 LANES,) float64: two random points of which each ray is made
+    numbers: View  # (ROWS LANES,) float64: of which each ray is made, see `raylab.lanes`
 
-    def draw(self, lane, first, second, time):
-        """Keep what a lane's ray will be made of: two points of the unit square and a time in [0, 1]."""
-        self.points[at(0, lane)], self.points[at(1, lane)] = first
-        self.points[at(2, lane)], self.points[at(3, lane)] = second
-        self.words[at(7, lane)] = time
+    def keep(self, row, lane, number):
+        """Set a random number of which a lane's ray will be made; rows as in `raylab.lanes`."""
+        self.numbers[at(row, lane)] = number
 
-    def drawn(self, lane):
-        """The two points and the time."""
-        points = self.points
-        first, second = (points[at(0, lane)], points[at(1, lane)]), (points[at(2, lane)], points[at(3, lane)])
-        return first, second, self.time(lane)
+    def keep_point(self, row, lane, point):
+        self.numbers[at(row, lane)], self.numbers[at(row + 1, lane)] = point
 
-    def put(self, lane, o, d, tfar, valid):
-        """Set a lane to the ray o + t d, 0 <= t <= tfar, at the time that was drawn."""
+    def point(self, row, lane):
+        """The point in rows `row` and `row` + 1."""
+        return self.numbers[at(row, lane)], self.numbers[at(row + 1, lane)]
+
+    def drawn_time(self, lane):
+        """The time in [0, 1], as Embree sees it."""
+        return np.float64(np.float32(self.numbers[at(TIME, lane)]))
+
+    def put(self, lane, o, d, tfar, time, valid):
+        """Set a lane to the ray o + t d, 0 <= t <= tfar, at a time."""
         words = self.words
+        words[at(7, lane)] = time
         words[at(0, lane)], words[at(1, lane)], words[at(2, lane)] = o.x, o.y, o.z
         words[at(4, lane)], words[at(5, lane)], words[at(6, lane)] = d.x, d.y, d.z
         words[at(8, lane)] = tfar
@@ -87,7 +91,9 @@ def new_packet() -> Packet:
     memory = np.zeros((_PACKET_WORDS + 2) * LANES, np.float32)
     start = (-memory.ctypes.data % 64) // 4
     words, valid = np.split(memory[start:][: (_PACKET_WORDS + 1) * LANES], [_PACKET_WORDS * LANES])
-    return Packet(View(words), View(words.view(np.int32)), View(valid.view(np.int32)), View(np.full(4 * LANES, 0.5)))
+    numbers = np.full(ROWS * LANES, 0.5)
+    numbers[at(TIME, 0) :] = 0.0
+    return Packet(View(words), View(words.view(np.int32)), View(valid.view(np.int32)), View(numbers))
 
 
 def trace_packet(handle, packet):

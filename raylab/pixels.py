@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from raylab.jit import cached_njit, njit
+from raylab.lanes import FILM, LENS
 from raylab.packet import LANES, trace_packet
 from raylab.surface import BACK, FRONT, INVALID_RAYS, hit_of, is_valid_ray
 from raylab.vec3 import Vec3, black, is_finite, normalize
@@ -63,21 +64,16 @@ def send(scene, camera, sampler, packet, column, row, pixel, streams, first, las
 
     Returns how many dimensions of its stream each has drawn.
     """
-    lane = 0
-    for stream in range(streams):
-        for sample in range(first, last):
-            rng = sampler.stream(pixel, stream, sample)
-            time = scene.motion.draw(rng)
-            film, lens = camera.draw(rng)
-            packet.draw(lane, film, lens, time)
-            lane += 1
+    lanes, used = sampler.lanes(packet, pixel, streams, first, last), streams * (last - first)
+    scene.motion.draw_lanes(lanes)
+    camera.draw_lanes(lanes)
     for i in range(LANES):  # one after the other or side by side, as the compiler likes
-        film, lens, time = packet.drawn(i)
-        o, d, tfar = camera.ray(column, row, film, lens, time)
-        packet.put(i, o, d, tfar, is_valid_ray(o, d))
-    for i in range(lane):
+        time = packet.drawn_time(i)
+        o, d, tfar = camera.ray(column, row, packet.point(FILM, i), packet.point(LENS, i), time)
+        packet.put(i, o, d, tfar, time, is_valid_ray(o, d))
+    for i in range(used):
         scene.tally[INVALID_RAYS] += 1 + packet.valid[i]
-    packet.clear(lane)
+    packet.clear(used)
     trace_packet(scene.embree, packet)
     return sampler.counter.next[0]
 

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from raylab.jit import njit
+from raylab.lanes import one_by_one
 from raylab.record import record
 from raylab.rng import Counter, combine, mix, new_counter, permute, uniform
 from raylab.sobol import Sobol, sobol_columns, sobol_table
@@ -48,6 +49,9 @@ class Centre(NamedTuple):
 
     def stream(self, pixel, stream, sample):
         return CentreStream(self.counter)
+
+    def lanes(self, packet, pixel, streams, first, last):
+        return one_by_one(self, packet, pixel, streams, first, last)
 
 
 # --- independent ---
@@ -81,6 +85,9 @@ class Independent(NamedTuple):
     def stream(self, pixel, stream, sample):
         self.counter.next[0] = 0
         return IndependentStream(combine(combine(combine(self.seed, pixel), stream), sample), self.counter)
+
+    def lanes(self, packet, pixel, streams, first, last):
+        return one_by_one(self, packet, pixel, streams, first, last)
 
 
 # --- stratified ---
@@ -133,6 +140,9 @@ class Stratified(NamedTuple):
         key = combine(combine(combine(self.seed, pixel), stream), sample // n)
         return StratifiedStream(key, sample % n, self.across, self.down, self.counter)
 
+    def lanes(self, packet, pixel, streams, first, last):
+        return one_by_one(self, packet, pixel, streams, first, last)
+
 
 # --- Latin hypercube ---
 
@@ -176,6 +186,9 @@ class Latin(NamedTuple):
         self.counter.next[0] = 0
         key = combine(combine(combine(self.seed, pixel), stream), sample // self.n)
         return LatinStream(key, sample % self.n, self.n, self.counter)
+
+    def lanes(self, packet, pixel, streams, first, last):
+        return one_by_one(self, packet, pixel, streams, first, last)
 
 
 def grid(n: int) -> tuple[int, int]:

@@ -11,13 +11,13 @@ import numpy.typing as npt
 
 from raylab import description as d
 from raylab import keyframes
-from raylab.camera import MovingCamera, Pinhole, ThinLens, make_aperture, make_filter
+from raylab.camera import MovingCamera, Pinhole, ThinLens, first_depth, make_aperture, make_filter
 from raylab.defects import RANGE
 from raylab.errors import SceneError
 from raylab.geometry import Placement
 from raylab.motion import Moving
 from raylab.pose import LINEAR
-from raylab.vec3 import Vec3, length
+from raylab.vec3 import Vec3
 from raylab.view import View
 
 Array = npt.NDArray[np.float64]
@@ -47,9 +47,8 @@ def make_camera(camera: d.Camera, placement: Placement, motion: Any = None) -> P
         corner=eye.corner,
         across=eye.across,
         down=eye.down,
-        near=eye.near,
+        start=eye.start,
         far=eye.far,
-        distant=length(eye.origin) + aperture.reach() > 2.0,
         left=Vec3(*left),
         up=Vec3(*up),
         aperture=aperture,
@@ -90,9 +89,8 @@ def pinhole(camera: d.Camera, placement: Placement) -> Pinhole:
         corner=Vec3(*corner),
         across=Vec3(*across),
         down=Vec3(*down),
-        near=camera.near_clip * placement.scale,
+        start=first_depth(camera.near_clip * placement.scale, Vec3(*origin), Vec3(*left), Vec3(*up), Vec3(*forward)),
         far=camera.far_clip * placement.scale,
-        skip=max(0.0, float(np.linalg.norm(origin)) - 2.0),
         filter=make_filter(camera.filter),
     )
 

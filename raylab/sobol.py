@@ -1,9 +1,9 @@
-"""Owen-scrambled Sobol' points, four dimensions at a time; the sampler `sobol` of `raylab.samplers`."""
+"""Owen-scrambled Sobol' points, eight dimensions at a time; the sampler `sobol` of `raylab.samplers`."""
 
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,12 +13,17 @@ from raylab.rng import Counter, combine, u64
 from raylab.view import View
 
 _M32 = 0xFFFFFFFF
-SOBOL_DIMENSIONS = 4  # a block of dimensions that one Sobol' sequence serves; later blocks are shuffled anew
+SOBOL_DIMENSIONS = 8  # a block of dimensions that one Sobol' sequence serves; later blocks are shuffled anew
 TABLE_BITS = 12  # points 0 .. 4095 are tabulated, the further ones are differences to them
 
-# Primitive polynomials and initial numbers of dimensions 2 to 4 (degree, coefficients, m): Joe and Kuo 2008,
-# "Constructing Sobol sequences with better two-dimensional projections".
-_JOE_KUO = ((1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)))
+# Primitive polynomials and initial numbers of dimensions 2, 3, 4, 5, 7, 6 and 8 (degree, coefficients, m): Joe and
+# Kuo 2008, "Constructing Sobol sequences with better two-dimensional projections". Points of the unit square are made
+# of two neighbours; of the first 2^k points every box of area 2^(t-k) gets its share, with t at most 3 up to k = 12 in
+# this order of the dimensions, 5 and 7 beside each other as well as 3 and 4 (test_samplers).
+_JOE_KUO = (
+    (1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)), (3, 2, (1, 1, 1)), (4, 4, (1, 3, 5, 13)), (4, 1, (1, 1, 3, 3)),
+    (5, 2, (1, 1, 5, 5, 17)),
+)  # fmt: skip
 
 
 @njit
@@ -67,8 +72,8 @@ class SobolStream(NamedTuple):
 
     key: int
     place: int
-    table: View  # (4, 2^TABLE_BITS) uint32
-    columns: View  # (4, 32) uint32
+    table: View  # (SOBOL_DIMENSIONS, 2^TABLE_BITS) uint32
+    columns: View  # (SOBOL_DIMENSIONS, 32) uint32
 
     counter: Counter
 
@@ -87,7 +92,7 @@ class SobolStream(NamedTuple):
 
 @njit
 def block_index(stream, block):
-    """The sample's number in the sequence that serves the `block`-th four dimensions."""
+    """The sample's number in the sequence that serves the `block`-th eight dimensions."""
     if block == 0:
         return stream.place
     return shuffle_index(stream.place, combine(stream.key, -block))
@@ -95,7 +100,7 @@ def block_index(stream, block):
 
 @njit
 def sobol_number(stream, d, index):
-    """Coordinate d of point `index`, Owen-scrambled; random digits below 2^-32 fill up 53 bits."""
+    """Coordinate d of point `index`, Owen-scrambled."""
     axis = d & (SOBOL_DIMENSIONS - 1)
     x = u64(stream.table[axis, index & ((1 << TABLE_BITS) - 1)])
     rest, bit = index >> TABLE_BITS, TABLE_BITS
@@ -104,15 +109,62 @@ def sobol_number(stream, d, index):
             x ^= u64(stream.columns[axis, bit])
         rest >>= 1
         bit += 1
-    seed = combine(stream.key, d)
+    return scrambled(x, combine(stream.key, d))
+
+
+@njit
+def scrambled(x, seed):
+    """A reversed 32-bit fraction, Owen-scrambled, as a float64; random digits below 2^-32 fill up 53 bits."""
     x = reverse_bits(scramble_reversed(x, seed))
     digits = u64(u64(x ^ (seed >> u64(32))) * u64(0x9E3779B97F4A7C15)) >> u64(43)
     return ((x << u64(21)) | digits) * 1.1102230246251565e-16
 
 
 @record
+class SobolLanes(NamedTuple):
+    """The points of a packet, drawn side by side: the same numbers, in a loop that the compiler makes a vector loop."""
+
+    sampler: Any
+    packet: Any
+    pixel: int
+    streams: int
+    first: int
+    last: int
+
+    def number(self, row):
+        d = self.sampler.counter.next[0]
+        self.sampler.counter.next[0] = d + 1
+        draw_rows(self, row, d, 1)
+
+    def squares(self, row, count):
+        d = self.sampler.counter.next[0]
+        d += d & 1
+        self.sampler.counter.next[0] = d + 2 * count
+        draw_rows(self, row, d, 2 * count)
+
+
+@njit
+def draw_rows(lanes, row, first_dimension, count):
+    """Coordinates first_dimension, first_dimension + 1, ... of each lane's point into rows row, row + 1, ..."""
+    sampler, first, share = lanes.sampler, lanes.first, lanes.last - lanes.first
+    for stream in range(lanes.streams):
+        key, lane = combine(combine(sampler.seed, lanes.pixel), stream), stream * share
+        for k in range(count):
+            d = first_dimension + k
+            if d < SOBOL_DIMENSIONS and lanes.last <= 1 << TABLE_BITS:
+                seed = combine(key, d)
+                for i in range(share):
+                    lanes.packet.keep(row + k, lane + i, scrambled(u64(sampler.table[d, first + i]), seed))
+            else:
+                for i in range(share):
+                    point = SobolStream(key, first + i, sampler.table, sampler.columns, sampler.counter)
+                    index = block_index(point, d // SOBOL_DIMENSIONS)
+                    lanes.packet.keep(row + k, lane + i, sobol_number(point, d, index))
+
+
+@record
 class Sobol(NamedTuple):
-    """Owen-scrambled Sobol' points, four dimensions at a time."""
+    """Owen-scrambled Sobol' points, eight dimensions at a time."""
 
     seed: int
     table: View
@@ -124,10 +176,14 @@ class Sobol(NamedTuple):
         key = combine(combine(self.seed, pixel), stream)
         return SobolStream(key, sample, self.table, self.columns, self.counter)
 
+    def lanes(self, packet, pixel, streams, first, last):
+        self.counter.next[0] = 0
+        return SobolLanes(self, packet, pixel, streams, first, last)
+
 
 @cache
 def sobol_columns() -> np.ndarray:
-    """Generator matrices (4, 32) uint32, bit-reversed: column k is XORed in when bit k of the index is set."""
+    """Generator matrices (8, 32) uint32, bit-reversed: column k is XORed in when bit k of the index is set."""
     columns = np.zeros((SOBOL_DIMENSIONS, 32), np.uint32)
     columns[0] = 1 << np.arange(32, dtype=np.uint64)
     for axis, (degree, coefficients, initial) in enumerate(_JOE_KUO, start=1):
@@ -144,7 +200,7 @@ def sobol_columns() -> np.ndarray:
 
 @cache
 def sobol_table() -> np.ndarray:
-    """The first 2^TABLE_BITS points (4, 2^TABLE_BITS) uint32, bit-reversed."""
+    """The first 2^TABLE_BITS points (8, 2^TABLE_BITS) uint32, bit-reversed."""
     table = np.zeros((SOBOL_DIMENSIONS, 1 << TABLE_BITS), np.uint32)
     for k in range(TABLE_BITS):
         table[:, 1 << k : 2 << k] = table[:, : 1 << k] ^ sobol_columns()[:, k : k + 1]
