@@ -22,7 +22,7 @@ from raylab.pose import pose_at
 from raylab.record import record
 from raylab.sampling import sample_concentric_disk, sin_cos_turns
 from raylab.surface import round32
-from raylab.vec3 import Vec3, cross, dot, normalize
+from raylab.vec3 import Vec3, cross, dot, length, normalize
 from raylab.view import View
 
 CENTRE = (0.5, 0.5)
@@ -200,6 +200,7 @@ class ThinLens(NamedTuple):
     down: Vec3
     start: float
     far: float
+    wide: bool  # an aperture wider than the scene: each ray has a depth of its own at which it begins
     left: Vec3
     up: Vec3
     aperture: Any
@@ -220,14 +221,17 @@ class ThinLens(NamedTuple):
         toward = self.corner + self.across * (column + 0.5 + dx) + self.down * (row + 0.5 + dy)
         a = self.left * lens[0] + self.up * lens[1]
         d = toward - a * self.power
-        return round32(self.origin + a + d * self.start), round32(d), max(TNEAR, self.far - self.start)
+        o, start = self.origin + a, self.start
+        if self.wide:
+            start = max(start, (length(o) - 2.0) / length(d))
+        return round32(o + d * start), round32(d), max(TNEAR, self.far - start)
 
     def at(self, pose):
         """The camera at the local origin, moved to a pose."""
         return ThinLens(
             pose.p, turned(pose, self.corner), turned(pose, self.across), turned(pose, self.down),
-            first_depth(self.start, pose.p, pose.x, pose.y, pose.z), self.far, turned(pose, self.left),
-            turned(pose, self.up), self.aperture, self.power, self.filter,
+            first_depth(self.start, pose.p, pose.x, pose.y, pose.z), self.far, self.wide,
+            turned(pose, self.left), turned(pose, self.up), self.aperture, self.power, self.filter,
         )  # fmt: skip
 
 

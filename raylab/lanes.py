@@ -1,7 +1,8 @@
 """Lanes: the random numbers of a packet's rays, drawn row by row, a number for each ray.
 
-`sampler.lanes(...)` gives something with the methods `number(row)` and `square(row)`, in the order in which a ray by
-itself would draw `number()` and `square()`, and with the same results: how is the sampler's affair.
+`sampler.lanes(...)` has two methods: `number(row)` draws a number for each ray, and `squares(row, count)` points of the
+unit square into rows row, row + 1, ..., two to a point. The numbers are those that each ray would draw by itself, with
+`number()` and `square()`; how they are drawn is the sampler's affair.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from raylab.record import record
 # Rows: a point for the pixel filter, one for the aperture, and a time; what a scene does not draw stays as it is.
 FILM, LENS, TIME, ROWS = 0, 2, 4, 5
 LANES = 16
+
 
 @record
 class OneByOne(NamedTuple):
@@ -54,5 +56,6 @@ def resumed(lanes, stream, sample, d):
 
 @njit
 def one_by_one(sampler, packet, pixel, streams, first, last):
+    """A sampler's `lanes`, from the first dimension on."""
     sampler.counter.next[0] = 0
     return OneByOne(sampler, packet, pixel, streams, first, last)

@@ -49,6 +49,7 @@ def make_camera(camera: d.Camera, placement: Placement, motion: Any = None) -> P
         down=eye.down,
         start=eye.start,
         far=eye.far,
+        wide=aperture.radius > 2.0,
         left=Vec3(*left),
         up=Vec3(*up),
         aperture=aperture,

@@ -18,8 +18,8 @@ TABLE_BITS = 12  # points 0 .. 4095 are tabulated, the further ones are differen
 
 # Primitive polynomials and initial numbers of dimensions 2, 3, 4, 5, 7, 6 and 8 (degree, coefficients, m): Joe and
 # Kuo 2008, "Constructing Sobol sequences with better two-dimensional projections". Points of the unit square are made
-# of two neighbours; of the first 2^k points every box of area 2^(t-k) gets its share, with t at most 3 up to k = 12 in
-# this order of the dimensions, 5 and 7 beside each other as well as 3 and 4 (test_samplers).
+# of two neighbours: in this order of the dimensions the first 2^k of them put their share into every box of area
+# 2^(t-k), with t = 0 for the first pair and at most 2 for the others up to k = 12.
 _JOE_KUO = (
     (1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)), (3, 2, (1, 1, 1)), (4, 4, (1, 3, 5, 13)), (4, 1, (1, 1, 3, 3)),
     (5, 2, (1, 1, 5, 5, 17)),

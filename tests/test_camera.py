@@ -200,7 +200,7 @@ def test_a_camera_is_placed_with_its_scene():
     c = d.Camera(to_world=placed((2.0, 2.0, 2.0)), near_clip=0.25, far_clip=80.0)
     eye, same = pinhole(c, half), pinhole(c, HERE)
     assert [*eye.origin] == [0.5, 0.0, -0.5]
-    assert (eye.near, eye.far) == (0.125, 40.0)
+    assert (eye.start, eye.far) == (0.125, 40.0)
     assert eye.corner == same.corner
 
 
@@ -227,6 +227,25 @@ def test_a_far_camera_meets_the_same_points(distance):
         assert far + np.linalg.norm(array(o) - start) / np.linalg.norm(want) == pytest.approx(1e9, rel=1e-6)
     if distance > 100:
         assert np.linalg.norm(array(o)) < 4.0
+
+
+@pytest.mark.parametrize("sheared", [False, True])
+@pytest.mark.parametrize("distance", [0.5, 2.5, 100.0])
+def test_eye_rays_begin_before_all_content(distance, sheared):
+    """Points of the box that holds everything have at least the depth at which rays begin, wherever the eye looks."""
+    rng = np.random.default_rng(1)
+    content = np.concatenate([rng.uniform(-1.0, 1.0, (200, 3)), 2.0 * np.indices((2, 2, 2)).reshape(3, -1).T - 1.0])
+    for _ in range(50):
+        axes = Rotation.random(random_state=rng).as_matrix().T
+        if sheared:
+            axes[2] += 0.6 * axes[0]
+            axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+        origin = distance * Rotation.random(random_state=rng).as_matrix()[0]
+        begin = camera.first_depth(0.25, *(Vec3(*v) for v in (origin, *axes)))
+        depth = (content - origin) @ np.linalg.inv(axes)[:, 2]  # p = origin + x left + y up + depth forward
+        assert begin >= 0.25
+        assert begin == 0.25 or begin <= depth.min()
+        assert distance < 50.0 or begin == 0.25 or depth.min() - begin < 4.0
 
 
 def test_a_far_plane_before_the_content_is_kept():

@@ -93,7 +93,7 @@ def test_a_disk_aperture_is_sampled_uniformly():
 
 
 def corner_of(opening):
-    return opening.reach()
+    return opening.radius
 
 
 @pytest.mark.parametrize("blades", [3, 5, 8])

@@ -11,8 +11,8 @@ PACKAGE = Path(__file__).parents[1] / "raylab"
 
 # The reading path, top to bottom; then what stands beside it.
 ORDER = [
-    "_version", "errors", "atomic", "description", "jit", "vec3", "view", "record", "pose", "rng", "lanes", "sobol", "samplers",
-    "sampling", "solid_angle", "mis", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point",
+    "_version", "errors", "atomic", "description", "jit", "vec3", "view", "record", "pose", "rng", "lanes", "sobol",
+    "samplers", "sampling", "solid_angle", "mis", "fresnel", "brdf", "microfacet", "smooth", "rough", "kinds", "point",
     "light_shapes", "lights", "light_choice",
     "environment", "materials", "quadrics", "callbacks", "motion", "embree", "packet", "surface", "shadow",
     "shade", "beyond", "glossy", "direct", "basic", "lecture", "lens", "camera", "keyframes", "triangles",

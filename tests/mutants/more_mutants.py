@@ -11,9 +11,8 @@ HIDDEN = [
         Edit("light_shapes:SphereShape.sample", "if d2 <= radius * radius * (1.0 + 2.0**-40):", "if d2 > 0.0:")),
     one("a103", "in focus at a distance along the ray, not on a plane", "lens aslant", "M", "camera:ThinLens.ray",
         "a * self.power", "a * (self.power * length(toward))", -51.5),
-    one("C3", "one time for all samples of a pixel", "shrinks direct crossing_edge", "C", "pixels:send",
-        "time = scene.motion.draw(rng)", "time = scene.motion.draw(sampler.stream(pixel, stream, sample // 16 * 16))\n"
-        "            rng = sampler.stream(pixel, stream, sample)\n            rng.number()"),
+    one("C3", "one time for all samples of a pixel", "shrinks direct crossing_edge", "C", "packet:Packet.drawn_time",
+        "at(TIME, lane)", "at(TIME, 0)"),
     one("V7", "says by power, picks evenly, rightly weighed", "picks power; lights by power", "P",
         "light_choice:choose_by_alias", "return i, table.shares[i]",
         "return min(int(u[0] * len(table.shares)), len(table.shares) - 1), 1.0 / len(table.shares)"),
