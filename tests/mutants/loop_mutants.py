@@ -277,7 +277,7 @@ LENS = [
         "lens",
         "M",
         "camera:ThinLens.ray",
-        "a = self.left * x + self.up * y",
+        "a = self.left * lens[0] + self.up * lens[1]",
         "a = self.left * 0.0",
         -100.0,
     ),
@@ -297,8 +297,8 @@ LENS = [
         "lens",
         "M",
         "camera:ThinLens.ray",
-        "o = self.origin + a",
-        "o = self.origin + a * 0.5",
+        "self.origin + a,",
+        "self.origin + a * 0.5,",
     ),
 ]
 
