@@ -12,6 +12,7 @@ from raylab import description as d
 from raylab import lights, quadrics
 from raylab.errors import SceneError
 from raylab.geometry import Placement
+from raylab.order import order
 from raylab.point import plane_table
 from raylab.record import Table
 from raylab.view import View
@@ -137,7 +138,7 @@ def is_reversed(faces: npt.NDArray[np.uint32]) -> bool:
 
 
 def point_table(described: Sequence[d.Light], placement: Placement) -> Table:
-    """`scene.points`: intensity in normalised units (W/sr scale with length squared) and position."""
+    """`scene.points`, by position: intensity in normalised units (W/sr scale with length squared) and position."""
     found = [light for light in described if isinstance(light, d.PointLight)]
     if not found:
         return Table(lights.NoLight, np.zeros((0, 6)))
@@ -155,11 +156,11 @@ def point_table(described: Sequence[d.Light], placement: Placement) -> Table:
                 f"{intensity.tolist()} at {position.tolist()}"
             )
         rows.append(row)
-    return Table(lights.PointLight, np.stack(rows))
+    return Table(lights.PointLight, _ordered(rows, found))
 
 
 def sun_table(described: Sequence[d.Light]) -> Table:
-    """`scene.suns`: irradiance and the unit direction to the light."""
+    """`scene.suns`, by direction: irradiance and the unit direction to the light."""
     found = [light for light in described if isinstance(light, d.DirectionalLight)]
     if not found:
         return Table(lights.NoLight, np.zeros((0, 6)))
@@ -173,4 +174,10 @@ def sun_table(described: Sequence[d.Light]) -> Table:
         )  # exact; so that no square overflows or vanishes
         towards = towards / np.linalg.norm(towards)
         rows.append(np.concatenate([colour(light.irradiance, "directional light: irradiance"), -towards]))
-    return Table(lights.DirectionalLight, np.stack(rows))
+    return Table(lights.DirectionalLight, _ordered(rows, found))
+
+
+def _ordered(rows: list[Array], found: Sequence[d.Light]) -> Array:
+    """Rows of three colours and three coordinates, by the latter."""
+    table = np.stack(rows)
+    return table[order(table[:, 3:], found)]

@@ -150,6 +150,14 @@ def quadric_box(q: QuadricArrays) -> tuple[Array, Array]:
     return np.minimum(centre, top) - reach, np.maximum(centre, top) + reach
 
 
+def box_of(thing: MeshArrays | QuadricArrays) -> tuple[Array, Array]:
+    """The bounding box of a mesh over all its time steps, or of a quadric."""
+    if isinstance(thing, QuadricArrays):
+        return quadric_box(thing)
+    vertices = thing.vertices if len(thing.vertices) else np.zeros((1, 3))
+    return vertices.min(axis=0), vertices.max(axis=0)
+
+
 def moving_boxes(q: QuadricArrays, shutter: Shutter) -> Array:
     """(QUADRIC_SEGMENTS + 1, 2, 3): boxes at time steps that, interpolated, contain the quadric at each time."""
     motion = q.shape.motion

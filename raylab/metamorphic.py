@@ -189,11 +189,11 @@ def _exposed(sky: d.Environment | None, factor: float) -> d.Environment | None:
 
 
 def reordered(described: d.SceneDescription, rng: np.random.Generator) -> Relation | None:
-    """Shapes and lights in the opposite order."""
+    """Half a turn about z: lights, which stand in the order of their places (`raylab.order`), change theirs."""
     if len(described.lights) < 2 and sum(shape.radiance is not None for shape in described.shapes) < 2:
         return None
-    changed = replace(described, shapes=described.shapes[::-1], lights=described.lights[::-1])
-    return Relation("lights in another order", changed, "distribution")
+    m = np.diag([-1.0, -1.0, 1.0, 1.0])
+    return Relation("lights in another order", mapped(described, m), "distribution", 1.0, m)
 
 
 def split(described: d.SceneDescription, rng: np.random.Generator) -> Relation | None:

@@ -4,7 +4,8 @@ Kernels work in normalised coordinates: the centre of all content at the origin,
 everything lies within [-1, 1]. Then the rounding of Embree's float32 does not depend on where a scene stands and in
 what unit it was drawn; scaling by a power of two changes no bit of the picture. What Embree does not need, the planes
 of triangles and the corners of lights, is not rounded to float32. Radiance has no length in it; the
-intensity of a point light, W/sr, is scaled with the square.
+intensity of a point light, W/sr, is scaled with the square. Lights are sorted by place (`raylab.order`), so that it
+does not matter in which order they are described.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ from raylab.clockwork import moving_rows, set_in_motion
 from raylab.embree import EmbreeScene
 from raylab.emitters import AreaLights, colour, point_table, sun_table
 from raylab.errors import SceneError
-from raylab.geometry import MeshArrays, Placement, QuadricArrays, gather, moving_boxes, quadric_box, quadric_row
+from raylab.geometry import MeshArrays, Placement, QuadricArrays, box_of, gather, moving_boxes, quadric_box, quadric_row
 from raylab.light_choice import make_choice
 from raylab.motion import Static
+from raylab.order import order
 from raylab.palette import Palette
 from raylab.point import plane_table
 from raylab.record import Table
@@ -117,18 +119,30 @@ class _Builder:
             first += len(m.faces)
         return planes
 
+    def _lights(self) -> dict[int, int]:
+        """The light of each shape that has one; they are numbered in the order of their places."""
+        things: list[MeshArrays | QuadricArrays] = [*self.meshes, *self.quads]
+        lit = [i for i, thing in enumerate(things) if thing.shape.radiance is not None]
+        corners = [self.placement.points(box_of(things[i])) for i in lit]
+        places = [np.concatenate([lower + upper, lower]) for lower, upper in corners]
+        return {lit[k]: self._add_light(lit[k]) for k in order(places, [things[i].shape for i in lit])}
+
+    def _add_light(self, i: int) -> int:
+        if i < len(self.meshes):
+            m = self.meshes[i]
+            return self.area_lights.add_mesh(m.shape, m.kind, self.placement.points(m.vertices), m.faces)
+        i -= len(self.meshes)
+        return self.area_lights.add_quadric(self.quads[i].shape, self.rows[i])
+
     def _shapes(self) -> npt.NDArray[np.int64]:
+        lights = self._lights()
         table, first_face, first_vertex = [], 0, 0
-        for m in self.meshes:
-            light = -1
-            if m.shape.radiance is not None:
-                light = self.area_lights.add_mesh(m.shape, m.kind, self.placement.points(m.vertices), m.faces)
+        for i, m in enumerate(self.meshes):
             smooth, has_uv = int(m.normals is not None), int(m.uv is not None)
-            table.append([first_face, first_vertex, *self._sides(m.shape), light, smooth, has_uv])
+            table.append([first_face, first_vertex, *self._sides(m.shape), lights.get(i, -1), smooth, has_uv])
             first_face, first_vertex = first_face + len(m.faces), first_vertex + len(m.vertices)
-        for q, row in zip(self.quads, self.rows, strict=True):
-            light = -1 if q.shape.radiance is None else self.area_lights.add_quadric(q.shape, row)
-            table.append([0, 0, *self._sides(q.shape), light, 0, 1])
+        for i, q in enumerate(self.quads, len(self.meshes)):
+            table.append([0, 0, *self._sides(q.shape), lights.get(i, -1), 0, 1])
         return np.array(table, np.int64).reshape(-1, SHAPE_COLUMNS)
 
     def _sides(self, shape: d.Shape) -> tuple[int, int]:

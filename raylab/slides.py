@@ -116,7 +116,7 @@ TABLE = (
         ("raylab.camera.Pinhole",),
         scene="depth_of_field",
         figure="depth_of_field",
-        test="test_depth_of_field.py::test_a_point_aperture_is_the_pinhole_bit_for_bit",
+        test="test_bitwise_relations.py::test_a_point_aperture_is_the_pinhole",
     ),
     Slide(
         "Cause of focusing effects (finite aperture)",
@@ -131,7 +131,7 @@ TABLE = (
         "picture",
         scene="motion_blur",
         figure="motion_blur",
-        test="test_motion_blur.py::test_a_frozen_shutter_is_the_static_picture_bit_for_bit",
+        test="test_bitwise_relations.py::test_a_closed_shutter_is_the_static_picture",
     ),
     Slide(
         "Cause of motion blur",

@@ -5,10 +5,10 @@
 Writes into each folder
 
 - `reference.npz`: `mean` (h, w, 3) and `standard_error` (h, w, 3) of each pixel, `variance` (h, w, 3) of one
-  independent sample of `direct` there, all float32, and `samples`, how many the mean is made of;
+  independent sample of `direct` (or of `strategy`) there, all float32, and `samples`, how many the mean is made of;
 - `truth.json`: `source` in words; `parameters`, with which the scene has the size of the reference; `reference`, the
-  name of the file; `shade`, where it is not `direct`; and where a closed form gives the whole image, its exact `mean`
-  [r, g, b] and `standard_error`.
+  name of the file; `shade`, where it is not `direct`; `strategy`, where `direct` shows the same but has no variance;
+  and where a closed form gives the whole image, its exact `mean` [r, g, b] and `standard_error`.
 
 A closed form is averaged over each pixel: a smooth one by Gauss-Legendre quadrature, to all digits, one with outlines
 in it at jittered points, whose spread is its standard error. Everything else is rendered: 16 pictures of 256
@@ -39,6 +39,7 @@ HERE = Path(__file__).parent
 SIZES = {"cornell_box": (96, 96), "soft_shadows": (120, 90), "hdr_sky": (120, 80), "veach_plates": (128, 96),
          "mirror_balls": (60, 40), "many_lights": (90, 60)}  # fmt: skip
 SHADES = {"mirror_balls": "basic"}  # where it is not `direct`
+STRATEGIES = {"touching_light": "area_solid_angle"}  # where `direct` has no variance
 PICTURES = 16  # of which the spread is the standard error
 SAMPLES = 256  # of each picture
 SEED = 20_000  # the first picture's, far from the small seeds that tests and studies use
@@ -93,7 +94,8 @@ def make(name: str) -> None:
         mean, error, samples = rendered(scene, shade)
     else:
         mean, error, samples = (averaged if parameters else integrated)(scene, form)
-    noisy = raylab.render(scene, shade, sampler="independent", spp=VARIANCE_SAMPLES, seed=SEED)
+    strategy = STRATEGIES.get(name, shade)
+    noisy = raylab.render(scene, strategy, sampler="independent", spp=VARIANCE_SAMPLES, seed=SEED)
     variance = noisy.standard_error**2 * VARIANCE_SAMPLES
     with replacing(HERE / name / "reference.npz") as path:
         columns = {"mean": mean, "standard_error": error, "variance": variance}
@@ -101,6 +103,8 @@ def make(name: str) -> None:
     truth: dict[str, object] = {"reference": "reference.npz", "parameters": parameters}
     if shade != "direct":
         truth["shade"] = shade
+    if strategy != shade:
+        truth["strategy"] = strategy
     if form:
         truth["mean"] = [float(v) for v in mean.mean(axis=(0, 1))]
         truth["standard_error"] = [float(v) for v in np.sqrt((error**2).sum(axis=(0, 1))) / error[..., 0].size]

@@ -108,6 +108,21 @@ def light_below_horizon(o: Array, d: Array) -> Array:
     return result
 
 
+def touching_light(o: Array, d: Array) -> Array:
+    """Lambert's polygon formula for a light that stands on the floor, averaged over each pixel"""
+    colour = np.array([1.0, 0.86, 0.62])
+    light = np.array([(-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 2.0, 0.0), (-1.0, 2.0, 0.0)])
+    to_floor, x = plane(o, d, 1, 0.0)
+    to_light, y = plane(o, d, 2, 0.0)
+    in_light = np.isfinite(to_light) & (np.abs(y[:, 0]) <= 1.0) & (y[:, 1] >= 0.0) & (y[:, 1] <= 2.0)
+    on_floor = np.isfinite(to_floor) & (np.abs(x[:, 0]) <= 4.0) & (x[:, 2] <= 4.0)
+    result = np.where(in_light[:, None], colour, 0.0)
+    rows = on_floor & (x[:, 2] > 0.0) & ~in_light  # its back is black
+    normals = np.broadcast_to(UP, x[rows].shape)
+    result[rows] = reflected(forms.polygon(light, x[rows], normals), [0.72, 0.70, 0.66], colour)
+    return result
+
+
 def edge_occluder(o: Array, d: Array) -> Array:
     """Lambert's polygon formula for what the edge of the roof leaves of the light, averaged over each pixel"""
     light = np.array([(-2.0, 2.5, -1.0), (-1.0, 2.5, -1.0), (-1.0, 2.5, 1.0), (-2.0, 2.5, 1.0)])
@@ -164,6 +179,7 @@ PICTURES: dict[str, Callable[[Array, Array], Array]] = {
         cs667_sphere_grazing,
         cs667_triangle_normal,
         light_below_horizon,
+        touching_light,
         edge_occluder,
         ball_under_sky,
         many_lights,

@@ -76,3 +76,17 @@ def animation(*matrices, times=None):
 
 def shutter(eye, opened=0.0, closed=1.0):
     return replace(eye, shutter_open=opened, shutter_close=closed)
+
+
+def dance(**eye):
+    """Everything moves: a mesh, a quadric, a lamp and the camera."""
+    lamp_motion = animation(lamp().to_world, moved(0, -1, 3, 0.7, -0.7, -1))
+    pan = animation(camera(8).to_world, look_at((0.3, -5, 3), (0.1, 0, 0.5)))
+    shapes = (
+        d.Rectangle(to_world=moved(0, 0, 0, 4, 4, 1), front=GREY, back=GREY),
+        d.Cube(motion=animation(moved(0, 0, 0.5, 0.5, 0.5, 0.5), turned(80, size=(0.5,) * 3, offset=(0.5, 0, 0.6))),
+               front=GREY),
+        d.Sphere(motion=animation(moved(-1, 0, 0.4, 0.3, 0.3, 0.3), moved(-1, 1, 0.4, 0.3, 0.3, 0.3)), front=GREY),
+        replace(lamp(), motion=lamp_motion),
+    )  # fmt: skip
+    return d.SceneDescription(camera=replace(camera(8), motion=pan, **eye), shapes=shapes)

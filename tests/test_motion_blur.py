@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from helpers import ALPHA, array, same_bits
-from scenes import GREY, animation, camera, lamp, look_at, moved, room, shutter, turned
+from scenes import GREY, animation, camera, dance, look_at, moved, room, shutter, turned
 from scipy import integrate, stats
 
 from raylab import description as d
@@ -106,51 +106,10 @@ def test_a_rotating_quadric_is_exact(shape, middle):
 # --- the frozen shutter ---
 
 
-def dance(**eye):
-    """Everything moves: a mesh, a quadric, a lamp and the camera."""
-    lamp_motion = animation(lamp().to_world, moved(0, -1, 3, 0.7, -0.7, -1))
-    pan = animation(camera(8).to_world, look_at((0.3, -5, 3), (0.1, 0, 0.5)))
-    shapes = (
-        d.Rectangle(to_world=moved(0, 0, 0, 4, 4, 1), front=GREY, back=GREY),
-        d.Cube(motion=animation(moved(0, 0, 0.5, 0.5, 0.5, 0.5), turned(80, size=(0.5,) * 3, offset=(0.5, 0, 0.6))),
-               front=GREY),
-        d.Sphere(motion=animation(moved(-1, 0, 0.4, 0.3, 0.3, 0.3), moved(-1, 1, 0.4, 0.3, 0.3, 0.3)), front=GREY),
-        replace(lamp(), motion=lamp_motion),
-    )  # fmt: skip
-    return d.SceneDescription(camera=replace(camera(8), motion=pan, **eye), shapes=shapes)
-
-
-@pytest.mark.parametrize("time", [0.0, 0.3, 1.0, 7.0])
-def test_a_frozen_shutter_is_the_static_picture_bit_for_bit(time):
-    """E06: no time is drawn, nothing of motion is compiled."""
-    described = dance(shutter_open=time, shutter_close=time)
-
-    def put(thing):
-        return (
-            thing
-            if thing.motion is None
-            else replace(thing, to_world=keyframes.matrix_at(thing.motion, time), motion=None)
-        )
-
-    still = replace(described, camera=put(described.camera), shapes=tuple(put(s) for s in described.shapes))
-    frozen, plain = Scene(described), Scene(still)
-    assert isinstance(frozen.data.motion, Static)
-    assert frozen.features == plain.features
-    assert same_bits(render(frozen, spp=2).mean, render(plain, spp=2).mean)
-
-
 def test_what_stands_still_while_the_shutter_is_open_is_static():
     scene = Scene(dance(shutter_open=2.0, shutter_close=3.0))
     assert isinstance(scene.data.motion, Static)
     assert isinstance(Scene(dance(shutter_open=0.9, shutter_close=3.0)).data.motion, Moving)
-
-
-def test_threads_and_bands_change_nothing():
-    scene = Scene(dance(shutter_open=0.1, shutter_close=0.9))
-    assert scene.features >= {"motion"}
-    one = render(scene, spp=4, threads=1, band_rows=1)
-    assert same_bits(one.mean, render(scene, spp=4, threads=3, band_rows=3).mean)
-    assert one.invalid_samples == 0
 
 
 # --- case C2: a moving edge ---

@@ -10,7 +10,6 @@ import pytest
 from raylab import description as d
 from raylab.jit import njit
 from raylab.point import plane_table, triangle_frame
-from raylab.render import render
 from raylab.sampling import sample_cos_hemisphere, sample_triangle
 from raylab.scene import Scene
 from raylab.shadow import shadow, shadow_toward
@@ -136,57 +135,6 @@ def test_grazing_light_is_not_shadowed_by_itself():
         blocked = View(np.zeros(n, np.int64))
         count_blocked(scene.data, View(rng.uniform(0.4, 0.6, (n, 2))), View(rng.random((n, 2))), blocked)
         assert blocked.array.sum() == 0
-
-
-def little_scene(scale: float, offset: float, width: int = 24) -> Scene:
-    """Dyadic coordinates, so that scaling by 2^k and moving by whole numbers change no bit of the input."""
-
-    def box(m: np.ndarray) -> np.ndarray:
-        world = np.diag([scale, scale, scale, 1.0])
-        world[:3, 3] = offset * scale
-        return world @ m
-
-    def moved(x: float, y: float, z: float, *size: float) -> np.ndarray:
-        m = np.diag([*size, 1.0])
-        m[:3, 3] = (x, y, z)
-        return m
-
-    camera = box(np.array([[-1.0, 0, 0, 0], [0, 0, 1, -4], [0, 1, 0, 1], [0, 0, 0, 1]]))
-    camera[:3, :3] /= scale
-    camera[:3, :3] = np.array([[-1.0, 0, 0], [0, 0, 1], [0, 1, 0]]).T
-    return Scene(
-        d.SceneDescription(
-            camera=d.Camera(
-                to_world=camera,
-                fov=50.0,
-                near_clip=0.125 * scale,
-                far_clip=64 * scale,
-                width=width,
-                height=width,
-            ),
-            shapes=(
-                d.Rectangle(to_world=box(moved(0, 0, 0, 4, 4, 1)), front=GREY, back=GREY),
-                d.Cube(to_world=box(moved(0.5, 0.5, 0.5, 0.5, 0.5, 0.5)), front=GREY),
-                d.Rectangle(to_world=box(moved(-1, -1, 3, 1, -1, -1)), radiance=np.full(3, 4.0), front=None),
-            ),
-        )
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize("k", [-60, -20, -1, 1, 30, 60])
-def test_scaling_by_a_power_of_two_changes_no_bit(k):
-    """A10."""
-    plain = render(little_scene(1.0, 0.0), "area", spp=4, seed=3)
-    scaled = render(little_scene(2.0**k, 0.0), "area", spp=4, seed=3)
-    np.testing.assert_array_equal(plain.mean, scaled.mean)
-    assert plain.mean.max() > 0.1
-
-
-@pytest.mark.parametrize("offset", [1.0, -1024.0, 2.0**30])
-def test_moving_by_a_whole_number_changes_no_bit(offset):
-    plain = render(little_scene(1.0, 0.0), "area", spp=4, seed=3)
-    moved = render(little_scene(1.0, offset), "area", spp=4, seed=3)
-    np.testing.assert_array_equal(plain.mean, moved.mean)
 
 
 def test_loader_and_kernel_agree_on_the_offset_terms():

@@ -100,7 +100,7 @@ def test_a_picture_agrees_with_its_reference(name):
     The variance of a sample is pooled from the one kept with the reference and the picture's own: light that reaches
     a pixel in one sample of a thousand shows in one of them and not in the other.
     """
-    shade = truth(name).get("shade", "direct")
+    shade = truth(name).get("strategy", truth(name).get("shade", "direct"))
     image, known = raylab.render(load(name), shade, sampler="independent", spp=SPP, seed=1), reference(name)
     assert image.invalid_samples == image.invalid_rays == 0
     kept, own = VARIANCE_SAMPLES * known["variance"], SPP * image.standard_error**2 * SPP

@@ -13,7 +13,6 @@ from scenes import GREY, camera, lamp, moved, outdoors, room
 from scipy import stats
 
 from raylab import description as d
-from raylab import schedule
 from raylab.errors import InvalidSampleError, UserError
 from raylab.image import estimate
 from raylab.packet import LANES
@@ -29,39 +28,6 @@ from raylab.surface import DEGENERATE_SAMPLES
 from raylab.vec3 import Vec3, black, is_finite
 
 render_module = sys.modules["raylab.render"]  # raylab.render is the function
-
-
-@pytest.mark.parametrize("sampler", ["independent", "stratified", "sobol"])
-def test_threads_and_bands_change_no_bit(sampler):
-    scene = room(17)
-    one = render(scene, "area", sampler=sampler, spp=12, seed=5, threads=1)
-    for threads, rows in ((2, 1), (3, 4), (1, 17), (8, 5)):
-        other = render(scene, "area", sampler=sampler, spp=12, seed=5, threads=threads, band_rows=rows)
-        np.testing.assert_array_equal(one.mean, other.mean)
-        np.testing.assert_array_equal(one.standard_error, other.standard_error)
-
-
-@pytest.mark.parametrize("first_pass", [1, 1 << 22])
-def test_passes_do_not_split_packets_as_the_clock_goes(monkeypatch, first_pass):
-    """On a slow machine a picture is made in many passes and on a fast one in few; the packets are the same."""
-    ends: list[int] = []
-    monkeypatch.setattr(schedule, "FIRST_PASS", first_pass)
-
-    def noted(run, pool, first, last, progress):
-        ends.append(last)
-        one_pass(run, pool, first, last, progress)
-
-    one_pass = render_module._one_pass
-    monkeypatch.setattr(render_module, "_one_pass", noted)
-    pictures = []
-    for short in (1e-9, 1e9):
-        monkeypatch.setattr(schedule, "SHORT", short)
-        ends.clear()
-        pictures.append(render(room(17), "area", sampler="independent", spp=200, seed=5).mean)
-        assert ends[-1] == 200
-        assert all(end == 1 or end % LANES == 0 for end in ends[:-1]), ends
-        assert len(ends) >= (3 if short < 1 else 1)
-    np.testing.assert_array_equal(*pictures)
 
 
 def test_another_seed_is_another_picture_of_the_same_scene():

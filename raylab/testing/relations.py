@@ -35,6 +35,7 @@ def related(
     x, y = before(share.child(1)), after(share.child(2))
     pilot, cut = before(share.child(3))(PILOT), lambda values: values
     if relation.expected == "distribution":  # of samples that are spread alike, all that is cut off alike is as well
+        pilot = np.concatenate([pilot, after(share.child(4))(PILOT) / relation.factor])  # one of them may be black
         bound = top = 4.0 * pilot.max(axis=0) + 1e-300
         cut = lambda values: np.minimum(values, top)  # noqa: E731
     if bound is None:
