@@ -13,6 +13,10 @@ import raylab
 WIDTH, HEIGHT = 48, 36
 REPEATS = 24  # pictures of Mitsuba's, from which its standard errors are taken
 ALPHA = 1e-6  # probability of a false alarm, for each scene
+FILM = """<film type="hdrfilm">
+            <integer name="width" value="$width"/><integer name="height" value="$height"/><rfilter type="box"/>
+        </film>
+        <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>"""
 
 
 def parameters(text: str, spp: int) -> dict[str, str]:

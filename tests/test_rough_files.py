@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from crosscheck import agree
+from crosscheck import FILM, agree
 
 from raylab import cli
 from raylab.description import Bitmap, RoughConductor, RoughPlastic
@@ -122,16 +122,16 @@ def test_a_negative_roughness_ends_with_code_2(tmp_path, monkeypatch, capsys):
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
 
 
-ROUGH = """
+ROUGH = (
+    """
 <scene version="3.0.0">
     <integrator type="direct"/>
     <sensor type="perspective">
         <float name="fov" value="34"/>
         <transform name="to_world"><lookat origin="0.5,-6,3" target="0,0,0.6" up="0,0,1"/></transform>
-        <film type="hdrfilm">
-            <integer name="width" value="$width"/><integer name="height" value="$height"/><rfilter type="box"/>
-        </film>
-        <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>
+        """
+    + FILM
+    + """
     </sensor>
     <shape type="rectangle">
         <transform name="to_world"><scale value="6"/></transform>
@@ -179,6 +179,7 @@ ROUGH = """
     <emitter type="constant"><rgb name="radiance" value="0.3,0.4,0.6"/></emitter>
 </scene>
 """
+)
 
 
 @pytest.mark.crosscheck

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from mutants import alarms
 from scipy import stats
-from scipy.special import logsumexp
 
 from raylab.stats.betting import SIZES, Claim, Test, interval, upward
 from raylab.stats.histogram import Histogram, edges_for
@@ -42,24 +42,9 @@ def test_the_histogram_never_overstates_the_capital_and_hardly_understates_it(dr
 
 
 def test_false_alarms_at_a_billionth_by_change_of_measure():
-    """P0(capital ever >= 1 / alpha) = E_Q[1 / E at that time], where E = dQ/dP0 is known exactly.
-
-    X is 0 or 1 with the fair mean 1/4. Under Q_j the odds of bet j are true, and the mixture of the Q_j over all bets
-    is the one whose likelihood ratio to P0 the capital ought to be. The crossing is where the code sees it; a code
-    that counts its capital too high would cross early, with 1 / E above alpha. Bets 1 to 5 of 14 are sampled.
-    """
-    rng, alpha, mean = np.random.default_rng(), 3.3e-9, 0.25
-    bets, weights = SIZES / mean, []
-    gain, loss = np.log1p(bets * (1 - mean)), np.log1p(-bets * mean)
-    for _ in range(200):
-        j = rng.integers(5)
-        histogram, ones = Histogram(np.array([0.0, 0.5, 1.0])), 0
-        while upward(histogram, 0.0, mean) < -math.log(alpha):
-            values = (rng.random(128) < mean * (1 + bets[j] * (1 - mean))).astype(float)
-            histogram.add(values)
-            ones += int(values.sum())
-        total = int(histogram.counts.sum())
-        weights.append(math.exp(-(logsumexp(ones * gain + (total - ones) * loss) - math.log(len(bets)))))
+    """P0(capital ever >= 1 / alpha) = E_Q[1 / E at that time], whose standard error the bound allows for."""
+    alpha = 3.3e-9
+    weights = alarms.weights_at_the_crossing(alpha, runs=200)
     assert np.mean(weights) + stats.norm.isf(1e-6) * stats.sem(weights) <= alpha
     assert np.mean(weights) > alpha / 1000  # the bound is of use
 

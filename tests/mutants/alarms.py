@@ -21,9 +21,14 @@ ALPHA = 3.3e-9
 Draw = Callable[[Any, int], Any]
 
 
-def by_change_of_measure(alpha: float, runs: int) -> tuple[float, float]:
-    """P0(capital ever reaches 1 / alpha) / alpha and its standard error, as in tests/test_stats_betting.py: of the bets
-    1 to 5 of 14, whose share of alpha is 5/14, looked at after each 128 of Bernoulli(1/4) observations."""
+def weights_at_the_crossing(alpha: float, runs: int) -> list[float]:
+    """1 / E where the capital reaches 1 / alpha, in runs under Q: P0(it ever does) is their mean, as E = dQ/dP0.
+
+    X is 0 or 1 with the fair mean 1/4, looked at after each 128. Under Q_j the odds of bet j are true, and the mixture
+    of the Q_j over all bets is the one whose likelihood ratio to P0 the capital ought to be. The crossing is where the
+    code sees it; a code that counts its capital too high would cross early, with 1 / E above alpha. Bets 1 to 5 of 14
+    are sampled, whose share of alpha is 5/14.
+    """
     rng, mean = np.random.default_rng(), 0.25
     bets, weights = SIZES / mean, []
     gain, loss = np.log1p(bets * (1 - mean)), np.log1p(-bets * mean)
@@ -36,6 +41,12 @@ def by_change_of_measure(alpha: float, runs: int) -> tuple[float, float]:
             ones += int(values.sum())
         total = int(histogram.counts.sum())
         weights.append(math.exp(-(logsumexp(ones * gain + (total - ones) * loss) - math.log(len(bets)))))
+    return weights
+
+
+def by_change_of_measure(alpha: float, runs: int) -> tuple[float, float]:
+    """P0(capital ever reaches 1 / alpha) / alpha and its standard error."""
+    weights = weights_at_the_crossing(alpha, runs)
     return float(np.mean(weights)) / alpha, float(stats.sem(weights)) / alpha
 
 
