@@ -51,5 +51,5 @@ clean:  ## remove what the targets above have made
 ON_TWO_CORES := -n 2 --dist loadfile --no-loadscope-reorder
 
 # The test files that also run without the compiler: the same source in plain Python, at small sizes.
-PLAIN := $(addprefix tests/test_,$(addsuffix .py,twin vec3 record rng lanes samplers sampling fresnel brdf lights \
-	light_table environment image_environment quadrics camera materials textures geometry microfacet rough glossy basic))
+PLAIN := $(addprefix tests/test_,$(addsuffix .py,twin vec3 record rng lanes samplers sobol sampling fresnel brdf \
+	lights light_table environment image_environment quadrics camera materials textures geometry microfacet rough glossy basic))
