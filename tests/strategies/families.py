@@ -146,7 +146,7 @@ FAMILIES = (
         "plastic",
         described(
             faced(meshes(textured=True) | boxes, m.rough_plastic | m.rough_metal),
-            (floor(d.RoughPlastic(diffuse_reflectance=CHECKS)), FLOOR, replace(FLOOR, front=d.RoughConductor())),
+            (floor(d.RoughPlastic(CHECKS, distribution="ggx")), FLOOR, replace(FLOOR, front=d.RoughConductor())),
             (square_lamps,),
         ),
         "mis_power",
