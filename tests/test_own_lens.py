@@ -53,7 +53,8 @@ def test_rays_through_a_students_lens_are_those_of_the_camera():
         for film, lens, (column, row) in zip(
             rng.random((50, 2)), rng.random((50, 2)), rng.integers(0, 240, (50, 2)), strict=True
         ):
-            (o, d, far), (p, e, end) = (c.ray(column, row, tuple(film), tuple(lens), 0.0) for c in (eye, seen.camera))
+            o, d, far = eye.ray(column, row, tuple(film), eye.aperture.sample(tuple(lens)), 0.0)
+            p, e, end = seen.camera.ray(column, row, tuple(film), tuple(lens), 0.0)
             np.testing.assert_allclose([*o, *d, far], [*p, *e, end], rtol=0.0, atol=2.0**-23)
 
 

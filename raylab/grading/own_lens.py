@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from raylab.camera import ThinLens
 from raylab.embree import TNEAR
 from raylab.errors import UserError
+from raylab.lanes import FILM
 from raylab.record import record
 from raylab.scene import Scene
 from raylab.surface import round32
@@ -39,6 +40,9 @@ def through(scene: Scene, sample_aperture: Any, lens_direction: Any) -> Scene:
     def draw(self, rng):
         return rng.square(), rng.square()
 
+    def draw_lanes(self, lanes):
+        lanes.squares(FILM, 2)
+
     def ray(self, column, row, film, lens, time):
         eye = self.eye
         dx, dy = eye.filter.sample(film)
@@ -47,12 +51,13 @@ def through(scene: Scene, sample_aperture: Any, lens_direction: Any) -> Scene:
         own = lens_direction(Vec3(dot(toward, eye.left), dot(toward, eye.up), 1.0), self.focus, px, py)
         d = eye.left * own.x + eye.up * own.y + self.forward * own.z
         o = eye.origin + eye.left * px + eye.up * py
-        start = eye.near
-        if eye.distant:
+        start = eye.start
+        if eye.wide:
             start = max(start, (length(o) - 2.0) / length(d))
         return round32(o + d * start), round32(d), max(TNEAR, eye.far - start)
 
-    made: Any = type("OwnLens", (Lens,), {"draw": draw, "ray": ray, "__module__": __name__, "__slots__": ()})
+    methods = {"draw": draw, "draw_lanes": draw_lanes, "ray": ray}
+    made: Any = type("OwnLens", (Lens,), {**methods, "__module__": __name__, "__slots__": ()})
     seen, scale = copy.copy(scene), scene.placement.scale
     forward = cross(eye.left, eye.up)
     seen.camera = record(made)(eye, forward, described.aperture_radius * scale, described.focus_distance * scale)
