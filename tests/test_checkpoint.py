@@ -65,6 +65,22 @@ def test_a_stopped_render_ends_with_the_same_picture(how, sampler, tmp_path, alw
     assert again.report["rays"] == whole.report["rays"]
 
 
+def test_ctrl_c_keeps_the_checkpoint_beside_the_picture(tmp_path, always):
+    scene, path = room(16), tmp_path / "kept.npz"
+    whole = render(scene, "area", sampler="sobol", relative_error=0.01)
+
+    def interrupted(state):
+        if state.done > 64:
+            raise KeyboardInterrupt
+
+    part = render(scene, "area", sampler="sobol", relative_error=0.01, checkpoint=path, progress=interrupted)
+    assert not part.complete
+    assert 0 < part.samples.min() < whole.samples.min()
+    again = render(scene, "area", sampler="sobol", relative_error=0.01, checkpoint=path)
+    assert again.complete
+    np.testing.assert_array_equal(again.mean, whole.mean)
+
+
 def test_a_finished_render_is_not_done_again(tmp_path):
     path, calls = tmp_path / "kept.npz", []
     first = render(room(8), "area", spp=16, checkpoint=path)

@@ -171,7 +171,8 @@ def test_relative_error_is_reached():
     assert (image.samples == image.samples[0, 0]).all()
 
 
-def test_interrupt_keeps_what_is_done():
+@pytest.mark.parametrize("how", [{"spp": 1 << 16}, {"seconds": 1e3}, {"relative_error": 1e-9}], ids=str)
+def test_interrupt_keeps_what_is_done(how):
     calls = []
 
     def progress(state):
@@ -179,11 +180,11 @@ def test_interrupt_keeps_what_is_done():
         if state.done >= 2 * LANES * STREAMS:
             raise KeyboardInterrupt
 
-    image = render(room(16), "area", spp=1 << 16, progress=progress)
+    image = render(room(16), "area", **how, progress=progress)
     assert not image.complete
     assert np.isfinite(image.mean).all()
     assert 4 * STREAMS <= image.samples.max() < 1 << 16
-    assert calls[-1].total == 1 << 16
+    assert calls[-1].total == how.get("spp")
 
 
 def test_spp_that_no_stream_divides():
