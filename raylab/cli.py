@@ -1,4 +1,4 @@
-"""The command line: raylab study, shades, figures, demo, stress; render and those of assignments are in `commands_*`.
+"""The command line: raylab study, shades, figures, demo, stress, stiff; the others are in `commands_*`.
 
 Standard output carries results, standard error everything else. Exit codes: 0 done, 2 bad input, 130 Ctrl-C.
 """
@@ -121,6 +121,31 @@ def stress_command(names: tuple[str, ...], folder: Path, markdown: Path | None, 
         markdown = None
     click.echo(f"{report.summary(rows)} Wrote {report.write(rows, folder, markdown)}.")
     return 0 if len(rows) == len(wanted) else INTERRUPTED
+
+
+@commands.command("stiff")
+@click.argument("names", nargs=-1, metavar="[CASE]...")
+@click.option("-o", "folder", metavar="DIR", required=True, type=click.Path(path_type=Path, file_okay=False),
+              help="Folder for the plot and the studies.")  # fmt: skip
+@click.option("--markdown", metavar="FILE", type=click.Path(path_type=Path, dir_okay=False),
+              help="Write the tables as Markdown as well.")  # fmt: skip
+@PROGRESS
+def stiff_command(names: tuple[str, ...], folder: Path, markdown: Path | None, progress: bool | None) -> int:
+    """Error against run time of each strategy on the stiff scenes (all, or those named, such as S02)."""
+    from raylab.progress import StepBar
+    from raylab.stress import stiff_report
+
+    wanted, rows = stiff_report.chosen(names), []
+    with StepBar("stiff", progress) as step:
+        for row in stiff_report.measure(wanted, step):
+            row.study.write(folder / row.stiff.id)
+            rows.append(row)
+            click.echo(f"{row.stiff.id}: {row.stiff.title}.\n{row.study.summary()}")
+    done = [row for row in rows if row.study.complete]
+    if done:
+        stiff_report.write(done, folder, markdown)
+    click.echo(f"Wrote {len(done)} of {len(wanted)} scenes into {folder}.")
+    return 0 if len(done) == len(wanted) else INTERRUPTED
 
 
 @commands.command("figures")

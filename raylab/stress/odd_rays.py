@@ -1,4 +1,4 @@
-"""Odd rays: not numbers, no direction, a direction of any length; where rays lie in memory; the caller's arrays."""
+"""Odd rays: not numbers, no direction, one of any length, no end; where rays lie in memory; the caller's arrays."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ import numpy.typing as npt
 
 from raylab import description as d
 from raylab.direct import follow
-from raylab.embree import _python_ray
+from raylab.embree import TNEAR, _python_ray
 from raylab.jit import njit
 from raylab.packet import LANES, new_packet
 from raylab.scene import Scene
 from raylab.shadow import is_blocked, shadow_toward
 from raylab.stress.case import Found, case
+from raylab.stress.lamps import squares
 from raylab.stress.leaving import GREY, mesh
 from raylab.stress.small_pictures import little_scene, picture
 from raylab.stress.usual_tracer import UsualTracer, trace_all, usual_hit
-from raylab.surface import INVALID_RAYS, intersect
+from raylab.surface import INVALID_RAYS, intersect, round32
 from raylab.vec3 import Vec3, vec3_at
 from raylab.view import View
 
@@ -215,3 +216,24 @@ def embreex_faults() -> float:
     kept.append(construction.TriangleMesh(scene, triangle + np.array([0, 0, 2], np.float32)))
     distance = scene.run(o, w, query="DISTANCE")[0]
     return float((limits[0] != 100.0) + (distance != 2.0))
+
+
+@case(
+    "D10", "10,000 rays that miss everything, to infinity", usual="distance < inf, where the default tfar is 1e37",
+    rule="tfar is infinite, and a miss is told by the number of the shape", truth="no hit", unit="rays that hit",
+    allowed=0.0,
+)  # fmt: skip
+def into_the_sky() -> Found:
+    scene = Scene(d.SceneDescription(shapes=(d.Rectangle(front=GREY),)))
+    u = squares(10_000)
+    return Found(_above(scene.data, u), float(np.isfinite(np.float32(1e37))) * len(u))
+
+
+@njit
+def _above(scene, u):
+    """Of rays upwards from a point above everything."""
+    hits = 0
+    for i in range(len(u)):
+        w = Vec3(u[i, 0] - 0.5, u[i, 1] - 0.5, 1.0)
+        hits += intersect(scene, Vec3(0.0, 0.0, 0.5), round32(w), TNEAR, INF).found
+    return hits

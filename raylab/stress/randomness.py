@@ -7,17 +7,13 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from raylab import description as d
 from raylab import samplers
 from raylab.image import estimate
 from raylab.jit import njit
 from raylab.pixels import COLUMNS, COUNT, MEAN
-from raylab.render import render
 from raylab.rng import mix, uniform
-from raylab.scene import Scene
 from raylab.stats.intervals import quantile
 from raylab.stress.case import U53, Found, case
-from raylab.stress.nearness import over_a_floor, placed
 from raylab.stress.stiff_lights import SAME
 
 Array = npt.NDArray[np.float64]
@@ -226,22 +222,6 @@ def intervals_of_sobol_points() -> Found:
     usual = 1.96 * math.sqrt((square**2 - one**4) / (streams * samples))
     held = [float((off <= reach).mean()) for reach in (quantile(streams - 1.0) * error[0, :, 0], usual)]
     return Found(abs(held[0] - 0.95), abs(held[1] - 0.95))
-
-
-@case(
-    "F10", "a picture by one thread and by two, in bands of 1, 3 and 16 rows", usual="one generator, tile after tile",
-    rule="numbers depend on seed, pixel, stream, sample and dimension alone", truth="the same picture, bit by bit",
-    unit="pixels of 256 that differ", allowed=0.0, limit=60.0,
-)  # fmt: skip
-def threads_and_tiles() -> Found:
-    eye = np.diag([1.0, -1.0, -1.0, 1.0])  # at the height 2, looking down
-    eye[2, 3] = 2.0
-    shapes = over_a_floor(placed(0, 0, 3, 1, 1, -1)).description.shapes
-    scene = Scene(d.SceneDescription(camera=d.Camera(eye, width=16, height=16), shapes=shapes))
-    pictures = [render(scene, "area", spp=4, threads=t, band_rows=b).mean for t, b in ((1, 16), (2, 1), (2, 3))]
-    rng, tiles = np.random.default_rng, np.arange(256).reshape(16, 16)
-    usual = int((rng(1).random(256)[tiles] != rng(1).random(256)[tiles.T]).sum())
-    return Found(sum(int((p != pictures[0]).any(axis=2).sum()) for p in pictures[1:]), usual)
 
 
 @case(

@@ -11,19 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from raylab import description as d
-from raylab.embree import TNEAR
 from raylab.environment import angles, cell_pdf, choose, choose_column
 from raylab.errors import SceneError
 from raylab.jit import njit
 from raylab.sampling import PI, sample_cos_hemisphere, turn
-from raylab.scene import Scene
 from raylab.sky import make_environment
 from raylab.stress.case import Found, case
 from raylab.stress.lamps import SAMPLES, off, squares
-from raylab.stress.nearness import WHITE
 from raylab.stress.oracle import exact, gauss, worst
 from raylab.stress.single import single, vector
-from raylab.surface import intersect, round32
 from raylab.vec3 import Vec3, dot
 
 Array = npt.NDArray[np.float64]
@@ -234,24 +230,3 @@ def bad_texels() -> Found:
         except SceneError as refusal:
             missing += "1 texels" not in str(refusal) or "row 2, column 5" not in str(refusal)
     return Found(missing, usual)
-
-
-@case(
-    "D10", "10,000 rays that miss everything, to infinity", usual="distance < inf, where the default tfar is 1e37",
-    rule="tfar is infinite, and a miss is told by the number of the shape", truth="no hit", unit="rays that hit",
-    allowed=0.0,
-)  # fmt: skip
-def into_the_sky() -> Found:
-    scene = Scene(d.SceneDescription(shapes=(d.Rectangle(front=WHITE),)))
-    u = squares(10_000)
-    return Found(_hits(scene.data, u), float(np.isfinite(np.float32(1e37))) * len(u))
-
-
-@njit
-def _hits(scene, u):
-    """Of rays upwards from a point above everything."""
-    hits = 0
-    for i in range(len(u)):
-        w = Vec3(u[i, 0] - 0.5, u[i, 1] - 0.5, 1.0)
-        hits += intersect(scene, Vec3(0.0, 0.0, 0.5), round32(w), TNEAR, math.inf).found
-    return hits

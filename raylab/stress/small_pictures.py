@@ -1,4 +1,4 @@
-"""Small pictures: a little scene of dyadic coordinates, at any power of two."""
+"""Small pictures: a little scene of dyadic coordinates, at any power of two; one by any number of threads."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from raylab.render import render
 from raylab.scene import Scene
 from raylab.stress.case import Found, case
 from raylab.stress.leaving import GREY, placed
+from raylab.stress.nearness import over_a_floor
+from raylab.stress.nearness import placed as square
 from raylab.stress.shadow_rays import USUAL, floor_and_light, random_pairs, usually_blocked
 
 Array = npt.NDArray[Any]
@@ -54,3 +56,19 @@ def powers_of_two() -> Found:
     if not plain.max() > 0.1:
         raise AssertionError("the picture is black")
     return Found(ours, theirs)
+
+
+@case(
+    "F10", "a picture by one thread and by two, in bands of 1, 3 and 16 rows", usual="one generator, tile after tile",
+    rule="numbers depend on seed, pixel, stream, sample and dimension alone", truth="the same picture, bit by bit",
+    unit="pixels of 256 that differ", allowed=0.0, limit=60.0,
+)  # fmt: skip
+def threads_and_tiles() -> Found:
+    eye = np.diag([1.0, -1.0, -1.0, 1.0])  # at the height 2, looking down
+    eye[2, 3] = 2.0
+    shapes = over_a_floor(square(0, 0, 3, 1, 1, -1)).description.shapes
+    scene = Scene(d.SceneDescription(camera=d.Camera(eye, width=16, height=16), shapes=shapes))
+    pictures = [render(scene, "area", spp=4, threads=t, band_rows=b).mean for t, b in ((1, 16), (2, 1), (2, 3))]
+    rng, tiles = np.random.default_rng, np.arange(256).reshape(16, 16)
+    usual = int((rng(1).random(256)[tiles] != rng(1).random(256)[tiles.T]).sum())
+    return Found(sum(int((p != pictures[0]).any(axis=2).sum()) for p in pictures[1:]), usual)
