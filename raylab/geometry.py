@@ -121,6 +121,9 @@ def quadric(shape: d.Sphere | d.Disk | d.Cylinder) -> QuadricArrays:
     if not 0.0 < shape.radius <= defects.RANGE:
         raise SceneError(f"shape {shape.name!r}: radius must be positive and finite, got {shape.radius}")
     local = np.eye(4)
+    for name in ("center",) if isinstance(shape, d.Sphere) else ("p0", "p1"):
+        if not np.abs(getattr(shape, name)).max() <= defects.RANGE:
+            raise SceneError(f"shape {shape.name!r}: {name} must be finite, got {getattr(shape, name)}")
     if isinstance(shape, d.Sphere):
         local[:3, :3] *= shape.radius
         local[:3, 3] = shape.center

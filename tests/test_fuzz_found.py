@@ -89,6 +89,14 @@ def test_a_shutter_may_be_as_short_as_the_rounding_of_its_time():
     assert "motion" in scene.features
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e200])
+def test_a_moving_ball_whose_centre_is_no_number_is_refused(bad):
+    """How far it moves was computed before that was noticed."""
+    ball = d.Sphere(center=np.array([0.0, bad, 0.0]), motion=animation(np.eye(4), turned(90.0)), name="ball")
+    with pytest.raises(SceneError, match="'ball': center must be finite"):
+        Scene(d.SceneDescription(camera=shutter(d.Camera()), shapes=(WORLD, ball)))
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_a_texture_map_that_is_no_map_is_refused(bad):
     """Each of its colours was NaN."""
