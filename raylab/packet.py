@@ -64,6 +64,13 @@ class Packet(NamedTuple):
         words[at(8, lane)] = tfar
         self.valid[lane] = -1 if valid else 0
 
+    def invalid(self, used):
+        """How many of the first `used` lanes have no valid ray."""
+        count = 0
+        for lane in range(used):
+            count += 1 + self.valid[lane]
+        return count
+
     def clear(self, used):
         """No hits yet, and lanes `used`, used + 1, ... are not traced. Embree leaves the words in between alone."""
         for lane in range(LANES):

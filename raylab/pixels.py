@@ -71,8 +71,7 @@ def send(scene, camera, sampler, packet, column, row, pixel, streams, first, las
         time = packet.drawn_time(i)
         o, d, tfar = camera.ray(column, row, packet.point(FILM, i), packet.point(LENS, i), time)
         packet.put(i, o, d, tfar, time, is_valid_ray(o, d))
-    for i in range(used):
-        scene.tally[INVALID_RAYS] += 1 + packet.valid[i]
+    scene.tally[INVALID_RAYS] += packet.invalid(used)
     packet.clear(used)
     trace_packet(scene.embree, packet)
     return sampler.counter.next[0]

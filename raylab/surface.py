@@ -75,8 +75,14 @@ def direction32(w):
 @njit
 def is_valid_ray(o, d):
     """Embree takes a thousand times longer over a ray with a NaN, and silently misses with others."""
-    dd = dot(d, d)
-    return dd > 0.0 and dot(o, o) + dd < math.inf  # false for every NaN and infinity
+    reach = size32(d)
+    return reach > 0.0 and size32(o) + reach < math.inf  # false for every NaN and infinity
+
+
+@njit
+def size32(v):
+    """|x| + |y| + |z| in float32: what is not finite shows, and nothing else underflows or needs a conversion."""
+    return abs(np.float32(v.x)) + abs(np.float32(v.y)) + abs(np.float32(v.z))
 
 
 @njit
