@@ -54,7 +54,7 @@ def trace_in_packets(handle, packet, origins, directions, off, found):
         lanes = min(LANES, len(found) - first)
         for lane in range(LANES):
             i = min(first + lane, len(found) - 1)
-            packet.put(lane, vec3_at(origins, i), vec3_at(directions, i), math.inf, off[i] != 1)
+            packet.put(lane, vec3_at(origins, i), vec3_at(directions, i), math.inf, 0.0, off[i] != 1)
         packet.clear(lanes)
         trace_packet(handle, packet)
         for lane in range(lanes):

@@ -261,7 +261,10 @@ BAD = [
     (d.Mesh(name="m", vertices=TRI, faces=ONE[0]), r"got \(3, 3\) and \(3,\)"),
     (d.Mesh(name="m", vertices=TRI * [[1.0], [np.nan], [1.0]], faces=ONE), "vertex 1 is not finite"),
     (d.Mesh(name="m", vertices=TRI, faces=ONE, normals=np.full((3, 3), np.nan)), "normals must be finite"),
-    (d.Mesh(name="m", vertices=TRI, faces=ONE, uv=np.zeros((2, 2))), r"uv must be finite, \(3, 2\), got \(2, 2\)"),
+    (
+        d.Mesh(name="m", vertices=TRI, faces=ONE, uv=np.zeros((2, 2))),
+        r"uv must be finite in float32 and \(3, 2\), got \(2, 2\)",
+    ),
     (d.Cube(name="c", to_world=FLAT), "'c'.*singular"),
     (d.Cube(name="c", to_world=np.full((4, 4), np.inf)), "finite affine"),
     (d.Cube(name="c", to_world=np.eye(3)), "finite affine"),
