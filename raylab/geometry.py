@@ -14,7 +14,7 @@ from raylab import defects, keyframes, quadrics
 from raylab import description as d
 from raylab.errors import SceneError
 from raylab.keyframes import Shutter
-from raylab.triangles import proportions
+from raylab.triangles import directions, proportions
 
 Array = npt.NDArray[np.float64]
 
@@ -189,9 +189,7 @@ def world_mesh(shape: d.Shape, warnings: list[str]) -> MeshArrays:
         bad = int(np.flatnonzero(~np.isfinite(world).all(axis=1))[0])
         raise SceneError(f"shape {shape.name!r}: vertex {bad} is not finite: {world[bad]}")
     if normals is not None:
-        normals = normals @ np.linalg.inv(m[:3, :3])
-        size = np.linalg.norm(normals, axis=1, keepdims=True)
-        normals = np.divide(normals, size, out=np.zeros_like(normals), where=size > 0)
+        normals = directions(directions(normals) @ np.linalg.inv(m[:3, :3]))
     # A mirror turns the winding over but not the normals that the shape comes with; faces follow the normals.
     inside_out = is_mirrored(m) and not (isinstance(shape, d.Mesh) and normals is None)
     if shape.flip_normals != inside_out:

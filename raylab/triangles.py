@@ -14,6 +14,14 @@ _GOLDEN = 0x9E3779B97F4A7C15  # 2^64 over the golden ratio
 FLAT = 2.0**-20  # twice the area over the square of the longest edge, below which Embree's own normal is noise
 
 
+def directions(vectors: Array) -> Array:
+    """(n, 3) unit vectors, and 0 for those that are 0; of any length, whose square may be beyond float64."""
+    largest = np.abs(vectors).max(axis=1, keepdims=True)
+    scaled = np.divide(vectors, largest, out=np.zeros_like(vectors), where=largest > 0)
+    unit: Array = scaled / np.where(largest > 0, np.linalg.norm(scaled, axis=1, keepdims=True), 1.0)
+    return unit
+
+
 def vertex_normals(vertices: Array, faces: npt.NDArray[np.integer]) -> Array:
     """(n, 3) unit normals: sum over the faces at a vertex of face normal x angle, normalised.
 
@@ -31,10 +39,8 @@ def vertex_normals(vertices: Array, faces: npt.NDArray[np.integer]) -> Array:
             weighted = normal * np.arctan2(double_area, cosine)[:, None]
             for axis in range(3):
                 np.add.at(total[:, axis], some[:, corner], weighted[:, axis])
-    length = np.linalg.norm(total, axis=1, keepdims=True)
-    total[length[:, 0] == 0] = (1.0, 0.0, 0.0)
-    normals: Array = total / np.where(length > 0, length, 1.0)
-    return normals
+    total[~total.any(axis=1)] = (1.0, 0.0, 0.0)
+    return directions(total)
 
 
 def proportions(vertices: Array, faces: npt.NDArray[np.integer]) -> tuple[Array, Array]:

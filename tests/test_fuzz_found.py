@@ -170,3 +170,20 @@ def test_vertices_of_triangles_that_are_left_out_may_be_anywhere():
     corners = np.array([[1e45, 0.0, 0.0], [1.0, 0, 0], [0, 1, 0]])
     needle = d.Mesh(vertices=corners, faces=np.array([[0, 1, 2]]), name="needle")
     assert any("left out" in warning for warning in Scene(d.SceneDescription(shapes=(WORLD, needle))).warnings)
+
+
+@pytest.mark.parametrize("size", ["1e200", "1e-200", "5e-324"])
+def test_normals_of_a_mesh_file_may_have_any_length(tmp_path, size):
+    """The square of 1e200 overflowed, and that of 1e-200 was 0."""
+    (tmp_path / "a.obj").write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn {size} 0 {size}\nf 1//1 2//1 3//1\n")
+    assert np.abs(read_mesh(tmp_path / "a.obj").normals - [0.5**0.5, 0.0, 0.5**0.5]).max() <= 2.0**-52
+
+
+def test_normals_of_a_mesh_may_have_any_length():
+    """The same from Python."""
+    corners, face = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    scenes = [
+        Scene(d.SceneDescription(shapes=(d.Mesh(vertices=corners, faces=face, normals=size * np.eye(3)),)))
+        for size in (1.0, 2.0**100, 2.0**-600)
+    ]
+    assert all(np.array_equal(s.data.normals.array, scenes[0].data.normals.array) for s in scenes[1:])

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from raylab.errors import SceneError
+from raylab.triangles import directions
 
 Array = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.uint32]
@@ -150,9 +151,9 @@ def _checked(file: Path, fields: dict[str, Any]) -> MeshData:
         _refuse(file, "texture coordinates that are not finite", ~np.isfinite(uv).all(axis=1))
     if normals is not None:
         normals = np.array(normals, dtype=np.float64)[:, :3]
-        length = np.linalg.norm(normals, axis=1, keepdims=True)
-        _refuse(file, "normals that are zero or not finite", ~(np.isfinite(length) & (length > 0))[:, 0])
-        normals /= length
+        wrong = ~(np.isfinite(normals).all(axis=1) & normals.any(axis=1))
+        _refuse(file, "normals that are zero or not finite", wrong)
+        normals = directions(normals)
     return MeshData(vertices, faces.astype(np.uint32), normals, uv)
 
 

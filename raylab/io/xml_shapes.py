@@ -89,7 +89,7 @@ def _section_error(to_world: Array, axis: Array) -> float:
 def _mesh(node: Node, context: Context, flip_tex_coords: bool) -> Mesh:
     """With smooth normals unless `face_normals`: of the file, else computed in world space as Mitsuba 3."""
     from raylab.io.mesh_file import read_mesh
-    from raylab.triangles import vertex_normals
+    from raylab.triangles import directions, vertex_normals
 
     common = _common(node, context)
     path = context.file(node)
@@ -103,8 +103,7 @@ def _mesh(node: Node, context: Context, flip_tex_coords: bool) -> Mesh:
         normals = None
     elif normals is None:
         linear = common["to_world"][:3, :3] / np.abs(common["to_world"][:3, :3]).max()
-        normals = vertex_normals(vertices @ linear.T, faces) @ linear  # back to local: n = A^T n_world
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = directions(vertex_normals(vertices @ linear.T, faces) @ linear)  # back to local: n = A^T n_world
     return Mesh(vertices=vertices, faces=faces, normals=normals, uv=uv, **common)
 
 
