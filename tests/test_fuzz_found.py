@@ -10,6 +10,7 @@ from raylab import description as d
 from raylab.errors import SceneError
 from raylab.geometry import world_mesh
 from raylab.io.mesh_file import read_mesh
+from raylab.io.mitsuba_xml import read
 from raylab.scene import Scene
 
 WORLD = d.Rectangle(name="world")
@@ -178,6 +179,17 @@ def test_normals_of_a_mesh_file_may_have_any_length(tmp_path, size):
     """The square of 1e200 overflowed, and that of 1e-200 was 0."""
     (tmp_path / "a.obj").write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn {size} 0 {size}\nf 1//1 2//1 3//1\n")
     assert np.abs(read_mesh(tmp_path / "a.obj").normals - [0.5**0.5, 0.0, 0.5**0.5]).max() <= 2.0**-52
+
+
+@pytest.mark.parametrize("name", ["1" * 300 + ".obj", "1" * 5000])
+def test_a_file_name_too_long_for_a_file_is_refused(tmp_path, name):
+    """It ended in an OSError."""
+    scene = tmp_path / "scene.xml"
+    scene.write_text(
+        f'<scene version="3.0.0"><shape type="obj"><string name="filename" value="{name}"/></shape></scene>'
+    )
+    with pytest.raises(SceneError, match="no file"):
+        read(scene)
 
 
 def test_normals_of_a_mesh_may_have_any_length():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from os.path import isfile
 from pathlib import Path
 from typing import Any
 
@@ -131,7 +132,7 @@ def find_file(tag: Tag, name: str, beside: Path | None = None) -> Path:
     """The file called `name`, looked for in the folder `beside` and in the folder of the tag's own file."""
     folders = [tag.file.parent] if beside is None else [beside, tag.file.parent]
     for folder in folders:
-        if (folder / name).is_file():
+        if isfile(folder / name):  # False as well for a name that is none, or too long for a file
             return folder / name
     where = " or ".join(f'"{folder}"' for folder in dict.fromkeys(folders))
     raise tag.error(f'no file "{name}" in {where}')

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 
@@ -139,7 +140,7 @@ def plot(rows: Sequence[Measured], path: Path) -> None:
     with panels.plots(path, down, across, 11.0 * across, 6.2 * down) as axes:
         for row, part in zip(rows, axes, strict=False):
             error_time(row.study, part)
-            part.set(title=f"{row.stiff.id}: {row.stiff.title}", ylabel="RMSE")
+            part.set(title=fill(f"{row.stiff.id}: {row.stiff.title}", 56), ylabel="RMSE")
         for part in axes[len(rows) :]:
             part.set_axis_off()
 

@@ -130,7 +130,8 @@ def _curves(study: Study, axes: Any, point: Point, slope: Callable[[Estimator], 
         )
         axes.plot(x, value, color=colour, linestyle=LINES[e.sampler], marker=MARKERS[e.sampler])
         fitted = slope(e)
-        text = label_of(study, e) + (f"  (slope {_minus(fitted.value)})" if fitted else "")
+        doubt = " ?" if fitted and fitted.doubts else ""
+        text = label_of(study, e) + (f"  (slope {_minus(fitted.value)}{doubt})" if fitted else "")
         ends.append((x[-1], value[-1], text, colour))
     _limit(study, axes, point)
     if ends:
